@@ -4,12 +4,13 @@
 //! rank, after the ranks have exchanged what their subtrees leave to it. So a rank stores its subtrees and the top, and
 //! a solve takes two sums over the ranks: of what subtrees leave to the rows of the top, and of the solution.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use mpi::traits::Communicator;
 
 use super::multifrontal::{Elimination, PartialCholesky, Pivots};
-use super::team::{Team, Whose};
+use super::team::Team;
 use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{gather_all, sum_all};
@@ -19,6 +20,8 @@ pub struct SharedCholesky {
     team: Rc<Team>,
     /// The panels that this rank has.
     factor: PartialCholesky,
+    /// A number for every row; those of this rank's subtrees and of the top are in use.
+    work: RefCell<Vec<f64>>,
 }
 
 impl SharedCholesky {
@@ -78,7 +81,8 @@ impl SharedCholesky {
             symbolic: team.symbolic.clone(),
             panels: elimination.panels,
         };
-        (SharedCholesky { team, factor }, left)
+        let work = vec![0.0; team.n()].into();
+        (SharedCholesky { team, factor, work }, left)
     }
 
     /// b ← A⁺ b, the same on every rank: zero at the dofs that are left out, after rounding. Collective.
@@ -89,20 +93,19 @@ impl SharedCholesky {
             return;
         }
         let mut y = factor.in_order(b);
-        let top = || (0..).zip(&team.rows).filter(|r| *r.1 == Whose::Top);
-        let begin: Vec<f64> = top().map(|(p, _)| std::mem::take(&mut y[p])).collect();
+        let rows = || team.top_rows.iter().map(|&p| p as usize);
+        let begin: Vec<f64> = rows().map(|p| std::mem::take(&mut y[p])).collect();
         factor.lower_of(team.fronts(&team.own), &mut y);
-        let mut left: Vec<f64> = top().map(|(p, _)| y[p]).collect();
+        let mut left: Vec<f64> = rows().map(|p| y[p]).collect();
         sum_all(&team.comm, &mut left);
-        for ((p, _), (begin, left)) in top().zip(begin.iter().zip(&left)) {
+        for (p, (begin, left)) in rows().zip(begin.iter().zip(&left)) {
             y[p] = begin + left;
         }
         factor.lower_of(team.fronts(&team.top), &mut y);
         factor.upper_of(team.fronts(&team.top).rev(), &mut y);
         factor.upper_of(team.fronts(&team.own).rev(), &mut y);
-        for (y, whose) in y.iter_mut().zip(&team.rows) {
-            *y = if self.speaks(*whose) { *y } else { 0.0 };
-        }
+        let others = y.iter_mut().enumerate().filter(|r| !team.tells_row(r.0));
+        others.for_each(|(_, y)| *y = 0.0);
         sum_all(&team.comm, &mut y);
         factor.by_dof(&y, b);
     }
@@ -112,7 +115,7 @@ impl SharedCholesky {
     /// return. One sum over the ranks, of the rows of the top. Collective.
     pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
         let (team, factor) = (&*self.team, &self.factor);
-        let mut y = vec![0.0; team.rows.len()];
+        let mut y = self.work.borrow_mut();
         let put = |rows: &[u32], values: &[f64], y: &mut [f64]| {
             rows.iter()
                 .zip(values)
@@ -124,6 +127,7 @@ impl SharedCholesky {
                 .for_each(|(&p, v)| *v = y[p as usize]);
         };
         put(&team.own_rows, own, &mut y);
+        team.top_rows.iter().for_each(|&p| y[p as usize] = 0.0);
         factor.lower_of(team.fronts(&team.own), &mut y);
         let left = team.top_rows.iter().map(|&p| y[p as usize]);
         top.iter_mut().zip(left).for_each(|(t, l)| *t += l);
@@ -141,11 +145,6 @@ impl SharedCholesky {
         &self.team
     }
 
-    /// Whether this rank tells the others about such rows.
-    fn speaks(&self, whose: Whose) -> bool {
-        whose == Whose::Own || (whose == Whose::Top && self.team.comm.rank() == 0)
-    }
-
     /// For each of these dofs, which are left out, the vector v with A v = 0 that is one there.
     /// Collective.
     pub fn null_vectors(&self, dofs: &[u32]) -> Vec<Vec<(u32, f64)>> {
@@ -155,12 +154,12 @@ impl SharedCholesky {
         let position = |dof: u32| symbolic.position[dof as usize] as usize;
         let mut words: Vec<u64> = Vec::new();
         for (k, &dof) in dofs.iter().enumerate() {
-            if team.rows[position(dof)] == Whose::Other {
+            if !team.has_row(position(dof)) {
                 continue;
             }
             let v = self.factor.null_vector(dof, team.fronts(&held).rev());
             for (i, value) in v {
-                if self.speaks(team.rows[position(i)]) {
+                if team.tells_row(position(i)) {
                     words.extend([k as u64, u64::from(i), value.to_bits()]);
                 }
             }

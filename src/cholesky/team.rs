@@ -11,16 +11,6 @@ use mpi::traits::Communicator;
 
 use super::symbolic::{Front, Symbolic};
 
-/// Whose a front is, and its rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Whose {
-    /// Of the subtrees of this rank.
-    Own,
-    /// Of all ranks.
-    Top,
-    Other,
-}
-
 /// Ranks that share a factor, and who of them has which front.
 pub struct Team {
     pub(super) comm: SimpleCommunicator,
@@ -31,25 +21,23 @@ pub struct Team {
     pub(super) top: Vec<usize>,
     /// The own fronts whose parents are in the top.
     pub(super) roots: Vec<usize>,
-    /// Whose each row is, in the order of elimination.
-    pub(super) rows: Vec<Whose>,
     /// Where each row is kept, in the order of elimination.
     places: Vec<Place>,
-    /// The rank of each row, [`TOP`] for the top.
-    owners: Vec<u32>,
     /// The rows of this rank's subtrees and of the top, increasing.
     pub(super) own_rows: Vec<u32>,
     pub(super) top_rows: Vec<u32>,
 }
 
-/// The owner of rows of the top.
-const TOP: u32 = u32::MAX;
-
 /// Where the entry of a dof is kept in a vector that no rank has whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// In a distributed vector that has the rows of each rank's subtrees, rank after rank.
-    Subtree(u32),
+    /// With the rank that has it in its subtrees, in a distributed vector that has these rows, rank after rank.
+    Subtree {
+        /// The rank.
+        rank: u32,
+        /// The number in the vector.
+        number: u32,
+    },
     /// Among the rows of the top.
     Top(u32),
 }
@@ -73,38 +61,24 @@ impl Team {
             _ => Vec::new(),
         };
         let ranks = deal(&symbolic.fronts, comm.size() as usize, &homes);
-        let whose = |f: usize| match ranks[f] {
-            None => Whose::Top,
-            Some(r) if r == rank => Whose::Own,
-            Some(_) => Whose::Other,
-        };
-        let of = |w: Whose| (0..ranks.len()).filter(|&f| whose(f) == w).collect();
-        let (own, top): (Vec<usize>, Vec<usize>) = (of(Whose::Own), of(Whose::Top));
-        let above = |f: &usize| symbolic.fronts[*f].parent.map(whose) == Some(Whose::Top);
+        let of = |whose: Option<u32>| (0..ranks.len()).filter(|&f| ranks[f] == whose).collect();
+        let (own, top): (Vec<usize>, Vec<usize>) = (of(Some(rank)), of(None));
+        let above = |f: &usize| symbolic.fronts[*f].parent.map(|t| ranks[t]) == Some(None);
         let roots = own.iter().copied().filter(above).collect();
-        let mut rows = Vec::with_capacity(symbolic.n_interior());
-        for (f, front) in symbolic.fronts.iter().enumerate() {
-            rows.extend(std::iter::repeat_n(whose(f), front.width()));
-        }
-        let places = places(&symbolic.fronts, &ranks, comm.size() as usize);
-        let fronts = symbolic.fronts.iter().zip(&ranks);
-        let owners = fronts.flat_map(|(f, r)| std::iter::repeat_n(r.unwrap_or(TOP), f.width()));
-        let owners = owners.collect();
-        let of = |w: Whose| -> Vec<u32> {
-            let rows = (0..).zip(&rows).filter(|r| *r.1 == w);
-            rows.map(|r| r.0).collect()
+        let rows_of = |fronts: &[usize]| -> Vec<u32> {
+            let fronts = fronts.iter().map(|&f| &symbolic.fronts[f]);
+            fronts.flat_map(|f| f.start as u32..f.end as u32).collect()
         };
-        let (own_rows, top_rows) = (of(Whose::Own), of(Whose::Top));
-        let symbolic = symbolic.with_panels(|f| whose(f) != Whose::Other);
+        let (own_rows, top_rows) = (rows_of(&own), rows_of(&top));
+        let places = places(&symbolic.fronts, &ranks, comm.size() as usize);
+        let symbolic = symbolic.with_panels(|f| ranks[f].is_none_or(|r| r == rank));
         Team {
             comm,
             symbolic: symbolic.into(),
             own,
             top,
             roots,
-            rows,
             places,
-            owners,
             own_rows,
             top_rows,
         }
@@ -115,19 +89,30 @@ impl Team {
         self.comm.size() > 1 && self.comm.size() == comm.size()
     }
 
-    /// The rank that has the row of a dof in its subtrees; `None` for the top.
-    pub fn owner(&self, dof: u32) -> Option<u32> {
-        let owner = self.owners[self.symbolic.position[dof as usize] as usize];
-        (owner != TOP).then_some(owner)
+    /// Number of rows.
+    pub fn n(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether this rank has a row, by its place in the order of elimination, in its subtrees or in the top.
+    pub(super) fn has_row(&self, row: usize) -> bool {
+        match self.places[row] {
+            Place::Subtree { rank, .. } => rank == self.comm.rank() as u32,
+            Place::Top(_) => true,
+        }
+    }
+
+    /// Whether it is this rank that tells the others about a row.
+    pub(super) fn tells_row(&self, row: usize) -> bool {
+        match self.places[row] {
+            Place::Subtree { rank, .. } => rank == self.comm.rank() as u32,
+            Place::Top(_) => self.comm.rank() == 0,
+        }
     }
 
     /// Whether it is this rank that tells the others about the row of a dof.
     pub fn tells(&self, dof: u32) -> bool {
-        match self.rows[self.symbolic.position[dof as usize] as usize] {
-            Whose::Own => true,
-            Whose::Top => self.comm.rank() == 0,
-            Whose::Other => false,
-        }
+        self.tells_row(self.symbolic.position[dof as usize] as usize)
     }
 
     /// The ranks.
@@ -202,14 +187,14 @@ fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Option<u32>> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); fronts.len()];
     let mut work: Vec<f64> = fronts.iter().map(Front::flops).collect();
     // The largest subtree comes first; of equal ones, the first.
-    let mut subtrees: BinaryHeap<(Work, Reverse<usize>)> = BinaryHeap::new();
+    let mut subtrees: BinaryHeap<(Flops, Reverse<usize>)> = BinaryHeap::new();
     for (f, front) in fronts.iter().enumerate() {
         match front.parent {
             Some(t) => {
                 work[t] += work[f];
                 children[t].push(f);
             }
-            None => subtrees.push((Work(work[f]), Reverse(f))),
+            None => subtrees.push((Flops(work[f]), Reverse(f))),
         }
     }
     let mut top = 0.0;
@@ -235,7 +220,7 @@ fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Option<u32>> {
             break;
         };
         subtrees.pop();
-        subtrees.extend(children[f].iter().map(|&c| (Work(work[c]), Reverse(c))));
+        subtrees.extend(children[f].iter().map(|&c| (Flops(work[c]), Reverse(c))));
         top += fronts[f].flops();
     }
     let mut rank = vec![None; fronts.len()];
@@ -272,35 +257,35 @@ pub fn least_subtrees(ranks: f64) -> f64 {
 
 /// Operations, ordered by their number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Work(f64);
+struct Flops(f64);
 
-impl Eq for Work {}
+impl Eq for Flops {}
 
-impl Ord for Work {
-    fn cmp(&self, other: &Work) -> Ordering {
+impl Ord for Flops {
+    fn cmp(&self, other: &Flops) -> Ordering {
         self.0.total_cmp(&other.0)
     }
 }
 
-impl PartialOrd for Work {
-    fn partial_cmp(&self, other: &Work) -> Option<Ordering> {
+impl PartialOrd for Flops {
+    fn partial_cmp(&self, other: &Flops) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
 /// The rank of each subtree, and the most that a rank has. Subtrees come by increasing work.
 fn dealt(
-    subtrees: Vec<(Work, Reverse<usize>)>,
+    subtrees: Vec<(Flops, Reverse<usize>)>,
     ranks: usize,
     home: &[u32],
 ) -> (f64, Vec<(usize, u32)>) {
     let share = subtrees.iter().map(|s| s.0 .0).sum::<f64>() / ranks as f64;
     let mut loads = vec![0.0; ranks];
     // The rank with the least load comes first. Entries are out of date if the load has changed since.
-    let mut least: BinaryHeap<Reverse<(Work, usize)>> =
-        (0..ranks).map(|r| Reverse((Work(0.0), r))).collect();
+    let mut least: BinaryHeap<Reverse<(Flops, usize)>> =
+        (0..ranks).map(|r| Reverse((Flops(0.0), r))).collect();
     let mut out = Vec::with_capacity(subtrees.len());
-    for (Work(work), Reverse(f)) in subtrees.into_iter().rev() {
+    for (Flops(work), Reverse(f)) in subtrees.into_iter().rev() {
         let to = match home.get(f) {
             Some(&h) if loads[h as usize] + work <= FULL * share => h as usize,
             _ => loop {
@@ -312,7 +297,7 @@ fn dealt(
             },
         };
         loads[to] += work;
-        least.push(Reverse((Work(loads[to]), to)));
+        least.push(Reverse((Flops(loads[to]), to)));
         out.push((f, to as u32));
     }
     (loads.iter().fold(0.0, |a, b| a.max(*b)), out)
@@ -320,30 +305,28 @@ fn dealt(
 
 /// The place of each row, in the order of elimination.
 fn places(fronts: &[Front], ranks: &[Option<u32>], size: usize) -> Vec<Place> {
-    let mut counts = vec![0u32; size];
     let fronts = || fronts.iter().zip(ranks);
+    // The number of the next row of each rank.
+    let mut next = vec![0u32; size + 1];
     for (front, rank) in fronts() {
         if let Some(r) = rank {
-            counts[*r as usize] += front.width() as u32;
+            next[*r as usize + 1] += front.width() as u32;
         }
     }
-    let mut next: Vec<u32> = counts
-        .iter()
-        .scan(0, |sum, n| {
-            *sum += n;
-            Some(*sum - n)
-        })
-        .collect();
-    let mut top = 0;
+    for r in 0..size {
+        next[r + 1] += next[r];
+    }
+    let mut of_top = 0;
     let mut places = Vec::new();
     for (front, rank) in fronts() {
         for _ in 0..front.width() {
-            let (place, number): (fn(u32) -> Place, _) = match rank {
-                Some(r) => (Place::Subtree, &mut next[*r as usize]),
-                None => (Place::Top, &mut top),
-            };
-            places.push(place(*number));
-            *number += 1;
+            let counter = rank.map_or(&mut of_top, |r| &mut next[r as usize]);
+            let number = *counter;
+            *counter += 1;
+            places.push(match *rank {
+                Some(rank) => Place::Subtree { rank, number },
+                None => Place::Top(number),
+            });
         }
     }
     places

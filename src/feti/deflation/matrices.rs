@@ -35,7 +35,7 @@ struct Split {
 /// E, factored.
 enum Inverse {
     Dense(Semidefinite),
-    Sparse(Sparse),
+    Sparse(Box<Sparse>),
 }
 
 impl Inverse {
@@ -103,7 +103,7 @@ impl Matrices {
                 });
                 let (shape, e) = sparse::product(dual.comm(), &w.y, &fw.y, known);
                 let diagonal = e.diagonal();
-                (Inverse::Sparse(Sparse::new(shape, e)), diagonal)
+                (Inverse::Sparse(Sparse::new(shape, e).into()), diagonal)
             }
             _ => {
                 let e = dense(dual.comm(), &w, &fw, &x);

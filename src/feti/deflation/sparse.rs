@@ -7,87 +7,39 @@ use mpi::topology::SimpleCommunicator;
 
 use super::panels::Panels;
 use crate::feti::projector::gram::{Gram, Shape};
+use crate::feti::projector::gtg::Side;
 use crate::feti::projector::pattern::Pattern;
+use crate::feti::projector::refined::Refined;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{gather_all, sum_all};
 
-/// E as a sparse matrix.
+/// E as a sparse matrix, factored.
 pub struct Sparse {
     /// Its pattern, which is kept while it suffices.
     pub shape: Rc<Shape>,
-    factor: Gram,
-    e: Csr,
-    /// Number of steps of refinement in a solve.
-    steps: usize,
+    inverse: Refined,
 }
 
-/// Largest residual of a solution with E, relative to the right-hand side, each entry by the root of its diagonal
-/// entry.
-const EXACT: f64 = 1e-14;
-
-/// Largest number of refinement steps.
-const STEPS: usize = 2;
-
 impl Sparse {
-    /// Factors `e`. Columns are left out without a choice of pivots, which may leave small ones: a solution with a
-    /// known vector tells how many steps of refinement make up for them. Collective.
+    /// Factors `e`. Collective.
     pub fn new(shape: Rc<Shape>, e: Csr) -> Sparse {
-        let mut sparse = Sparse {
-            factor: Gram::new(&shape, e.clone()),
+        let factor = Gram::new(&shape, e.clone());
+        Sparse {
             shape,
-            e,
-            steps: 0,
-        };
-        let n = sparse.e.n();
-        let root: Vec<f64> = sparse.e.diagonal().iter().map(|d| d.sqrt()).collect();
-        let x: Vec<f64> = (0..n)
-            .map(|i| 1.0 + ((i * 7919) % 13) as f64 / 13.0)
-            .zip(&root)
-            .map(|(x, d)| if *d > 0.0 { x / d } else { 0.0 })
-            .collect();
-        let mut b = vec![0.0; n];
-        sparse.e.mul(&x, &mut b);
-        let scaled = |v: &[f64]| {
-            let entries = v.iter().zip(&root).filter(|e| *e.1 > 0.0);
-            entries.fold(0.0f64, |m, (v, d)| m.max((v / d).abs()))
-        };
-        for steps in 0..=STEPS {
-            sparse.steps = steps;
-            let mut c = b.clone();
-            sparse.solve(&mut c);
-            if scaled(&sparse.rest(&c, &b)) <= EXACT * scaled(&b) {
-                break;
-            }
+            inverse: Refined::symmetric(factor, e),
         }
-        sparse
     }
 
     /// Number of independent columns.
     pub fn rank(&self) -> usize {
-        self.factor.n() - self.factor.dropped.len()
-    }
-
-    /// b − E c in the columns that are not left out.
-    fn rest(&self, c: &[f64], b: &[f64]) -> Vec<f64> {
-        let mut rest = vec![0.0; c.len()];
-        self.e.mul(c, &mut rest);
-        rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        let dropped = self.factor.dropped.iter();
-        dropped.for_each(|&k| rest[k as usize] = 0.0);
-        rest
+        self.inverse.rank()
     }
 
     /// c ← E⁺ c, the same on every rank. Collective.
     pub fn solve(&self, c: &mut [f64]) {
-        let b = c.to_vec();
-        self.factor.solve(c);
-        for _ in 0..self.steps {
-            let mut rest = self.rest(c, &b);
-            self.factor.solve(&mut rest);
-            c.iter_mut().zip(&rest).for_each(|(c, r)| *c += r);
-        }
+        self.inverse.solve(c, Side::Plain);
     }
 }
 

@@ -10,8 +10,9 @@ use std::ops::Range;
 
 use mpi::traits::Communicator;
 
-use super::gtg::Side;
+use super::gtg::{direct, Side};
 use super::pattern::Pattern;
+use super::refined::probe;
 use super::rows::Rows;
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
@@ -132,14 +133,7 @@ impl Distributed {
         let matrix = Mat::from_triplets(session, Comm::World, own.len(), own.len(), &triplets)?;
         matrix.set_flag(MatFlag::Symmetric)?;
         matrix.set_near_null_space(false, &scaled(motions(&rhs, &own)?, &scale)?)?;
-        let ksp = Ksp::new(session, Comm::World)?;
-        ksp.set_operators(&matrix, &matrix)?;
-        ksp.set_options_prefix(prefix)?;
-        ksp.set_type("preonly")?;
-        ksp.pc()?.set_type("lu")?;
-        ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
-        ksp.set_from_options()?;
-        session.agree(ksp.setup())?;
+        let ksp = direct(session, Comm::World, &matrix, prefix)?;
         let mut new = Distributed {
             session: session.clone(),
             ksp,
@@ -201,10 +195,11 @@ impl Distributed {
     /// Solves for a known vector: the residual relative to the right-hand side, and the error relative to the vector.
     fn tried(&self) -> Result<(f64, f64)> {
         let x = self.rhs.duplicate()?;
-        // A test vector that is neither smooth nor orthogonal to anything in particular.
-        for (i, x) in self.own.clone().zip(x.array_mut()?.iter_mut()) {
-            *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
-        }
+        let entries = self.own.clone().map(probe);
+        x.array_mut()?
+            .iter_mut()
+            .zip(entries)
+            .for_each(|(x, v)| *x = v);
         self.matrix.mult(&x, &self.rhs)?;
         let b = self.rhs.norm2()?;
         self.apply(Side::Plain)?;

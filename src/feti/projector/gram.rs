@@ -146,6 +146,7 @@ enum Factor {
     Dense(Semidefinite),
     Sparse {
         factor: SharedCholesky,
+        /// Zero for columns that are left out.
         scale: Vec<f64>,
     },
 }
@@ -213,6 +214,7 @@ impl Gram {
             (k, Motion::above(NOTHING_SOLVED, v))
         }));
         alone.sort_by_key(|m| m.0);
+        dropped.iter().for_each(|&k| scale[k as usize] = 0.0);
         Gram {
             factor: Factor::Sparse { factor, scale },
             dropped,
@@ -225,9 +227,10 @@ impl Gram {
     /// few, or dependent beyond that after rounding. Collective.
     pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
         let team = shape.team.as_ref()?;
-        let scale = scale_to_unit_diagonal(&mut a);
+        let mut scale = scale_to_unit_diagonal(&mut a);
         for &k in &plain.dropped {
             a.set_diagonal(k as usize, OUT);
+            scale[k as usize] = 0.0;
         }
         let (factor, more) = SharedCholesky::semidefinite(&a, team.clone(), WEIGHTED);
         more.is_empty().then(|| Gram {
@@ -243,10 +246,8 @@ impl Gram {
             Factor::Dense(factor) => factor.solve(x),
             Factor::Sparse { factor, scale } => {
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
-                self.dropped.iter().for_each(|&k| x[k as usize] = 0.0);
                 factor.solve(x);
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
-                self.dropped.iter().for_each(|&k| x[k as usize] = 0.0);
             }
         }
     }
@@ -260,10 +261,7 @@ impl Gram {
             unreachable!("few columns are not shared")
         };
         let scaled = |own: &mut [f64], top: &mut [f64]| {
-            let times = |(v, c): (&mut f64, u32)| match self.dropped.binary_search(&c) {
-                Ok(_) => *v = 0.0,
-                Err(_) => *v *= scale[c as usize],
-            };
+            let times = |(v, c): (&mut f64, u32)| *v *= scale[c as usize];
             own.iter_mut().zip(factor.team().own_dofs()).for_each(times);
             top.iter_mut().zip(factor.team().top_dofs()).for_each(times);
         };

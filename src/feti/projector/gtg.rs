@@ -1,7 +1,7 @@
 //! Gᵀ Q G and its inverse.
 //!
 //! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too.
-//! With other Q and many motions it is a factor of its own (`weighted`). Ranks share both. The matrix of few motions
+//! With other Q and many motions it is a factor of its own (`refined`). Ranks share both. The matrix of few motions
 //! stands behind an LU factorisation of each rank. If an option with the prefix `fetifeti_gtg_` is set, other than
 //! `redundancy`, it stands behind a PETSc KSP over all ranks (`distributed`).
 
@@ -12,9 +12,9 @@ use mpi::topology::SimpleCommunicator;
 
 use super::distributed::{Distributed, Work};
 use super::gram::{scale_to_unit_diagonal, Gram, Shape};
+use super::refined::{probe, Refined};
 use super::rows::Rows;
 use super::spread::Spread;
-use super::weighted::Weighted;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
@@ -45,7 +45,7 @@ enum Solver {
     /// The factor of GᵀG, where Q = I.
     Own,
     /// The factor of GᵀQG.
-    Weighted(Box<Weighted>),
+    Weighted(Box<Refined>),
     /// LU of every rank.
     Petsc(Scaled),
     /// The user's choice.
@@ -86,7 +86,7 @@ impl Gtg {
                 Solver::Chosen(chosen(&gram, &product())?.into())
             }
             ProjectorKind::Identity if gram.is_sparse() => Solver::Own,
-            _ if gram.is_sparse() => match Weighted::new(shape, sum(product()), &gram) {
+            _ if gram.is_sparse() => match Refined::weighted(shape, sum(product()), &gram) {
                 Ok(factor) => Solver::Weighted(factor.into()),
                 Err(a) => petsc(a)?,
             },
@@ -189,6 +189,23 @@ impl Gtg {
     }
 }
 
+/// PETSc's solver for GᵀQG: an LU factorisation, if options with this prefix do not choose another one. Collective.
+pub(super) fn direct(session: &Session, comm: Comm, matrix: &Mat, prefix: &str) -> Result<Ksp> {
+    let ksp = Ksp::new(session, comm)?;
+    ksp.set_operators(matrix, matrix)?;
+    ksp.set_options_prefix(prefix)?;
+    ksp.set_type("preonly")?;
+    // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
+    // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
+    ksp.pc()?.set_type("lu")?;
+    // G alone has decided what is held. With Q = M⁻¹ pivots are as small as the square of a jump.
+    ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
+    ksp.set_from_options()?;
+    // Matrices of this rank alone are equal on all ranks, but their machines need not be.
+    session.agree(ksp.setup())?;
+    Ok(ksp)
+}
+
 impl Scaled {
     fn new(session: &Session, gram: &Gram, mut a: Csr, prefix: &str) -> Result<Scaled> {
         let r = a.n();
@@ -208,18 +225,7 @@ impl Scaled {
             }
         }
         let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
-        let ksp = Ksp::new(session, Comm::Own)?;
-        ksp.set_operators(&matrix, &matrix)?;
-        ksp.set_options_prefix(prefix)?;
-        ksp.set_type("preonly")?;
-        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
-        // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
-        ksp.pc()?.set_type("lu")?;
-        // G alone has decided what is held. With Q = M⁻¹ pivots are as small as the square of a jump.
-        ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
-        ksp.set_from_options()?;
-        // The matrices of the ranks are equal, but their machines need not be.
-        session.agree(ksp.setup())?;
+        let ksp = direct(session, Comm::Own, &matrix, prefix)?;
         Ok(Scaled {
             ksp,
             scale,
@@ -231,10 +237,10 @@ impl Scaled {
 
     fn defect(&self) -> Result<f64> {
         let x = self.rhs.duplicate()?;
-        // A test vector that is neither smooth nor orthogonal to anything in particular.
-        for (i, x) in x.array_mut()?.iter_mut().enumerate() {
-            *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
-        }
+        x.array_mut()?
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, x)| *x = probe(i));
         self.matrix.mult(&x, &self.rhs)?;
         self.ksp.solve(&self.rhs, &self.solution)?;
         self.solution.axpy(-1.0, &x)?;

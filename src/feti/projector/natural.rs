@@ -222,20 +222,15 @@ impl NaturalCoarse {
         shape: &Shape,
         rows: [&Rows; 2],
     ) -> Result<Option<Rc<Spread>>> {
-        if !shape
-            .team()
-            .is_some_and(|team| team.is_whole(session.comm()))
-        {
+        let Some(team) = shape.team().filter(|team| team.is_whole(session.comm())) else {
             return Ok(None);
-        }
+        };
         let mut known = self.way.borrow_mut();
-        let fits = known
-            .as_ref()
-            .is_some_and(|s| s.fits(shape) && s.covers(&rows));
-        if any(session.comm(), !fits) {
+        let suffices = |s: &Rc<Spread>| s.fits(team) && s.covers(&rows);
+        if any(session.comm(), !known.as_ref().is_some_and(suffices)) {
             let all = [rows[0], rows[1], &self.all].into_iter();
             let columns = distinct(all.flat_map(|r| r.columns().iter().copied()));
-            *known = Spread::new(session, shape, &columns)?.map(Rc::new);
+            *known = Some(Spread::new(session, team, &columns)?.into());
         }
         Ok(known.clone())
     }

@@ -7,7 +7,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::rows::Rows;
-use crate::cholesky::team::Team;
+use crate::cholesky::team::{Place, Team};
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
@@ -189,12 +189,12 @@ impl Pattern {
         let row = |i: usize| self.row_ptr[i]..self.row_ptr[i + 1];
         let mut of_top = Vec::new();
         for i in 0..self.body.len() {
-            match team.owner(i as u32) {
-                None => {
+            match team.place(i as u32) {
+                Place::Top(_) => {
                     of_top.push(i);
                     top.extend(&product.val[row(i)]);
                 }
-                Some(owner) if owner != rank => {
+                Place::Subtree { rank: owner, .. } if owner != rank => {
                     for k in row(i) {
                         let value = std::mem::take(&mut product.val[k]);
                         if value != 0.0 {
@@ -202,7 +202,7 @@ impl Pattern {
                         }
                     }
                 }
-                Some(_) => (),
+                Place::Subtree { .. } => (),
             }
         }
         for words in exchange_words(team.comm(), outgoing) {

@@ -1,8 +1,8 @@
-//! (GᵀQG)⁻¹ with many rigid motions and Q ≠ I, by the crate's sparse Cholesky factorisation.
+//! A sparse factor, and steps of iterative refinement that make up for what it lacks.
 //!
 //! With Q = M⁻¹ rounding makes GᵀQG unsymmetric. P is a projection all the same if this very matrix is inverted, not
-//! its symmetric part, which is what is factored. Steps of iterative refinement make up for the difference. Without
-//! extreme jumps none is needed.
+//! its symmetric part, which is what is factored. A factor that leaves out columns without a choice of pivots may keep
+//! small ones. A solution for a known vector tells how many steps are needed; as a rule it is none.
 
 use super::gram::{Gram, Shape};
 use super::gtg::Side;
@@ -15,11 +15,16 @@ const EXACT: f64 = 1e-14;
 /// Largest number of refinement steps.
 const STEPS: usize = 3;
 
-/// The factor of the symmetric part of A = GᵀQG, and A.
-pub struct Weighted {
+/// Entry `i` of a test vector that is neither smooth nor orthogonal to anything in particular.
+pub fn probe(i: usize) -> f64 {
+    1.0 + ((i * 7919) % 13) as f64 / 13.0
+}
+
+/// A matrix A, and a factor of it or of its symmetric part.
+pub struct Refined {
     factor: Gram,
     matrix: Csr,
-    /// Aᵀ, if steps are needed.
+    /// Aᵀ, if A is not symmetric and steps are needed.
     transpose: Option<Csr>,
     /// Number of refinement steps.
     steps: usize,
@@ -27,10 +32,10 @@ pub struct Weighted {
     pub defect: f64,
 }
 
-impl Weighted {
-    /// Factors `a`, which has the pattern of `shape`; `plain` says what the rows hold. Gives `a` back if the factor is
-    /// not as good as one with pivots would be, or columns are few.
-    pub fn new(shape: &Shape, a: Csr, plain: &Gram) -> Result<Weighted, Csr> {
+impl Refined {
+    /// Factors `a` = GᵀQG, which has the pattern of `shape`; `plain` says what the rows hold. Gives `a` back if the
+    /// factor is not as good as one with pivots would be, or columns are few.
+    pub fn weighted(shape: &Shape, a: Csr, plain: &Gram) -> Result<Refined, Csr> {
         let transpose = transposed(&a);
         let mut symmetric = a.clone();
         let both = symmetric.val.iter_mut().zip(&transpose.val);
@@ -38,25 +43,40 @@ impl Weighted {
         let Some(factor) = Gram::weighted(shape, symmetric, plain) else {
             return Err(a);
         };
-        let mut weighted = Weighted {
+        match Refined::of(factor, a, Some(transpose)) {
+            (refined, true) => Ok(refined),
+            (refined, false) => Err(refined.matrix),
+        }
+    }
+
+    /// With the factor of a symmetric matrix.
+    pub fn symmetric(factor: Gram, matrix: Csr) -> Refined {
+        Refined::of(factor, matrix, None).0
+    }
+
+    /// With as many steps as are needed, and whether so many do.
+    fn of(factor: Gram, matrix: Csr, transpose: Option<Csr>) -> (Refined, bool) {
+        let mut refined = Refined {
             factor,
-            matrix: a,
-            transpose: Some(transpose),
+            matrix,
+            transpose,
             steps: 0,
             defect: f64::INFINITY,
         };
-        match weighted.enough() {
-            true => Ok(weighted),
-            false => Err(weighted.matrix),
-        }
+        let enough = refined.enough();
+        (refined, enough)
+    }
+
+    /// Number of columns that are not left out.
+    pub fn rank(&self) -> usize {
+        self.factor.n() - self.factor.dropped.len()
     }
 
     /// Finds out how many steps are needed. Returns whether so many do.
     fn enough(&mut self) -> bool {
         let root: Vec<f64> = self.matrix.diagonal().iter().map(|d| d.sqrt()).collect();
-        // A test vector that is neither smooth nor orthogonal to anything in particular.
         let mut x: Vec<f64> = (0..root.len())
-            .map(|i| 1.0 + ((i * 7919) % 13) as f64 / 13.0)
+            .map(probe)
             .zip(&root)
             .map(|(x, d)| if *d > 0.0 { x / d } else { 0.0 })
             .collect();
@@ -133,5 +153,5 @@ fn transposed(a: &Csr) -> Csr {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/inside/feti/projector/weighted.rs"]
+#[path = "../../../tests/inside/feti/projector/refined.rs"]
 mod tests;

@@ -7,7 +7,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::gram::{Gram, Shape};
+use super::gram::Gram;
 use super::rows::Rows;
 use crate::cholesky::team::{Place, Team};
 use crate::linalg::sorted::distinct;
@@ -19,7 +19,7 @@ use crate::Result;
 /// The way from the columns of this rank's rows to those who factor them, and back.
 pub struct Spread {
     team: Rc<Team>,
-    /// Columns of subtrees, increasing, and the way to their owners.
+    /// Columns of subtrees in the order of the owners' numbers, and the way to the owners.
     below: Vec<u32>,
     halo: Halo,
     /// Columns of the top, each with its place in it.
@@ -33,43 +33,35 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// For these columns and the factor of this shape; `None` if ranks do not share one. Collective.
-    pub fn new(session: &Session, shape: &Shape, columns: &[u32]) -> Result<Option<Spread>> {
-        let Some(team) = shape.team().filter(|team| team.is_whole(session.comm())) else {
-            return Ok(None);
-        };
-        let (mut below, mut numbers, mut top) = (Vec::new(), Vec::new(), Vec::new());
+    /// For these columns and factors that this team shares. Collective.
+    pub fn new(session: &Session, team: &Rc<Team>, columns: &[u32]) -> Result<Spread> {
+        let mut top = Vec::new();
         // PETSc's numbers of the columns of subtrees: rank after rank.
         let mut placed: Vec<(u32, u32)> = Vec::new();
         for &column in columns {
             match team.place(column) {
-                Place::Subtree(number) => placed.push((number, column)),
+                Place::Subtree { number, .. } => placed.push((number, column)),
                 Place::Top(at) => top.push((column, at)),
             }
         }
         placed.sort_unstable();
-        for (number, column) in placed {
-            numbers.push(number);
-            below.push(column);
-        }
+        let (numbers, below): (Vec<u32>, Vec<u32>) = placed.into_iter().unzip();
         let (n_own, n_top) = team.sizes();
         let own = PetscVec::mpi(session, n_own)?;
-        Ok(Some(Spread {
+        Ok(Spread {
             team: team.clone(),
             halo: Halo::new(session, &own, &numbers)?,
             below,
             top,
             own,
             shared: RefCell::new(vec![0.0; n_top]),
-            work: RefCell::new(vec![0.0; shape.pattern.bodies().len()]),
-        }))
+            work: RefCell::new(vec![0.0; team.n()]),
+        })
     }
 
-    /// Whether it leads to factors of this shape.
-    pub fn fits(&self, shape: &Shape) -> bool {
-        shape
-            .team()
-            .is_some_and(|team| Rc::ptr_eq(team, &self.team))
+    /// Whether it leads to factors of this team.
+    pub fn fits(&self, team: &Rc<Team>) -> bool {
+        Rc::ptr_eq(team, &self.team)
     }
 
     /// Whether it knows all columns of these rows.

@@ -1,4 +1,4 @@
-//! Unit tests of `src/feti/projector/weighted.rs`.
+//! Unit tests of `src/feti/projector/refined.rs`.
 
 use super::*;
 use crate::feti::projector::pattern::Pattern;
@@ -25,7 +25,7 @@ fn rows() -> Rows {
 }
 
 /// GᵀDG with weights over four orders, and with every entry above the diagonal wrong by the part `skew`.
-fn with_matrix(skew: f64, test: impl Fn(Result<Weighted, Csr>, &Csr) + Send + Sync + 'static) {
+fn with_matrix(skew: f64, test: impl Fn(Result<Refined, Csr>, &Csr) + Send + Sync + 'static) {
     with_session(move |session| {
         let comm = session.comm();
         let g = rows();
@@ -44,7 +44,7 @@ fn with_matrix(skew: f64, test: impl Fn(Result<Weighted, Csr>, &Csr) + Send + Sy
                 }
             }
         }
-        test(Weighted::new(&shape, a.clone(), &plain), &a);
+        test(Refined::weighted(&shape, a.clone(), &plain), &a);
     });
 }
 
