@@ -3,39 +3,12 @@
 
 use std::fmt::Write;
 
-/// splitmix64.
-pub struct Rng(u64);
+use super::mesh::mesh;
+use super::rng::Rng;
 
-impl Rng {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// low..=high.
-    fn between(&mut self, low: u64, high: u64) -> u64 {
-        low + self.below(high - low + 1)
-    }
-
-    fn one_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    /// A number with three digits behind the point.
-    fn number(&mut self, low: f64, high: f64) -> f64 {
-        let v = low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
-        (v * 1e3).round() / 1e3
-    }
-
-    fn pick<'a>(&mut self, of: &[&'a str]) -> &'a str {
-        of[self.below(of.len() as u64) as usize]
-    }
+/// A number with three digits behind the point.
+pub fn number(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    (rng.uniform(low, high) * 1e3).round() / 1e3
 }
 
 /// A scene, and the mesh beside it if it names one, `mesh.msh`.
@@ -56,7 +29,7 @@ struct Kind {
 
 /// The scene of a seed.
 pub fn text(seed: u64) -> Text {
-    let rng = &mut Rng(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ce7e);
+    let rng = &mut Rng::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x5ce7e);
     let kind = Kind {
         dim: if rng.one_in(3) { 3 } else { 2 },
         elastic: !rng.one_in(3),
@@ -80,7 +53,7 @@ pub fn text(seed: u64) -> Text {
     }
     options(rng, &mut out);
     if kind.steps {
-        let factor = rng.pick(&["1", "\"t\"", "\"t^2\"", "\"min(2*t, 1)\""]);
+        let factor = *rng.pick(&["1", "\"t\"", "\"t^2\"", "\"min(2*t, 1)\""]);
         let _ = write!(
             out,
             "[steps]\ncount = {}\nload = {factor}\n",
@@ -103,9 +76,9 @@ pub fn text(seed: u64) -> Text {
 
 fn options(rng: &mut Rng, out: &mut String) {
     *out += "[options]\n";
-    let mut set = |rng: &mut Rng, odds: u64, name: &str, values: &[&str]| {
+    let mut set = |rng: &mut Rng, odds: usize, name: &str, values: &[&str]| {
         if rng.one_in(odds) {
-            let _ = writeln!(out, "fetifeti_{name} = \"{}\"", rng.pick(values));
+            let _ = writeln!(out, "fetifeti_{name} = \"{}\"", *rng.pick(values));
         }
     };
     let loops = ["active_set", "augmented_lagrangian", "smalbe"];
@@ -157,7 +130,7 @@ fn material(rng: &mut Rng, kind: &Kind, grid: bool) -> String {
     };
     match kind.elastic {
         true => {
-            let poisson = rng.pick(&["0.3", "0.3", "0", "0.45", "0.49"]);
+            let poisson = *rng.pick(&["0.3", "0.3", "0", "0.45", "0.49"]);
             format!("young = {value}\npoisson = {poisson}\n")
         }
         false => format!("rho = {value}\n"),
@@ -167,10 +140,10 @@ fn material(rng: &mut Rng, kind: &Kind, grid: bool) -> String {
 /// A load, mostly downwards.
 fn load(rng: &mut Rng, kind: &Kind) -> String {
     let down = match kind.pressed {
-        true => -rng.number(0.1, 2.0),
-        false => rng.number(-1.0, 1.0),
+        true => -number(rng, 0.1, 2.0),
+        false => number(rng, -1.0, 1.0),
     };
-    let swing = rng.number(0.0, 2.0);
+    let swing = number(rng, 0.0, 2.0);
     let down = match rng.below(4) {
         0 => format!("\"{down} + {swing}*cos(5*x + 2*y)\""),
         1 => format!("\"{down}*(1 + x)\""),
@@ -180,7 +153,7 @@ fn load(rng: &mut Rng, kind: &Kind) -> String {
         return format!("load = {down}\n");
     }
     let aside = match rng.one_in(3) {
-        true => format!("{}", rng.number(-0.3, 0.3)),
+        true => format!("{}", number(rng, -0.3, 0.3)),
         false => "0".into(),
     };
     let mut all = vec![aside; kind.dim - 1];
@@ -199,10 +172,10 @@ fn ends(kind: &Kind) -> [&'static str; 2] {
 fn dirichlet(rng: &mut Rng, kind: &Kind, lowest: bool) -> String {
     let [low, high] = ends(kind);
     let value = |rng: &mut Rng| match (kind.elastic, rng.below(4)) {
-        (false, 0) => format!("{}", rng.number(-0.1, 0.1)),
+        (false, 0) => format!("{}", number(rng, -0.1, 0.1)),
         (false, 1) => "\"0.1*sin(3*x)\"".into(),
         (true, 0) => {
-            let push = format!("{}", rng.number(-0.1, 0.1));
+            let push = format!("{}", number(rng, -0.1, 0.1));
             list((0..kind.dim).map(|d| {
                 if d + 1 == kind.dim {
                     push.clone()
@@ -225,7 +198,7 @@ fn dirichlet(rng: &mut Rng, kind: &Kind, lowest: bool) -> String {
 }
 
 fn gap(rng: &mut Rng) -> String {
-    let size = rng.number(0.0, 0.1);
+    let size = number(rng, 0.0, 0.1);
     match rng.below(6) {
         0 => format!("gap = {size}\n"),
         1 => format!("gap = -{size}\n"),
@@ -246,11 +219,11 @@ fn part(rng: &mut Rng) -> String {
 
 fn obstacle(rng: &mut Rng, kind: &Kind, body: &str, low: f64) -> String {
     let [side, _] = ends(kind);
-    let at = low - rng.number(0.0, 0.2);
+    let at = low - number(rng, 0.0, 0.2);
     if !kind.elastic {
-        let bound = -rng.number(0.0, 0.3);
-        let wave = rng.number(0.0, 0.05);
-        let side = rng.pick(&["left", "right", side, "all"]);
+        let bound = -number(rng, 0.0, 0.3);
+        let wave = number(rng, 0.0, 0.05);
+        let side = *rng.pick(&["left", "right", side, "all"]);
         return format!(
             "[[obstacle]]\nbody = \"{body}\"\nside = \"{side}\"\nbelow = \"{bound} + {wave}*sin(4*x)\"\n"
         );
@@ -282,38 +255,38 @@ fn obstacle(rng: &mut Rng, kind: &Kind, body: &str, low: f64) -> String {
 /// Elements and subdomains of a box in each direction.
 fn cuts(rng: &mut Rng, dim: usize) -> (String, String) {
     let most = if dim == 2 { 3 } else { 2 };
-    let subdomains: Vec<u64> = (0..dim).map(|_| rng.between(1, most)).collect();
+    let subdomains: Vec<usize> = (0..dim).map(|_| rng.between(1, most)).collect();
     let each = if dim == 2 { 4 } else { 2 };
     let elements = subdomains
         .iter()
         .map(|s| (s * rng.between(1, each)).to_string());
-    (list(elements), list(subdomains.iter().map(u64::to_string)))
+    (list(elements), list(subdomains.iter().map(usize::to_string)))
 }
 
 /// A grid of equal bodies.
 fn grid(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
     let most = if kind.dim == 2 { 4 } else { 2 };
-    let bodies: Vec<u64> = (0..kind.dim).map(|_| rng.between(1, most)).collect();
-    let default = rng.pick(&["tied", "contact", "contact", "free"]);
+    let bodies: Vec<usize> = (0..kind.dim).map(|_| rng.between(1, most)).collect();
+    let default = *rng.pick(&["tied", "contact", "contact", "free"]);
     let _ = write!(out, "[interface]\ndefault = \"{default}\"\n[grid]\n");
-    let _ = writeln!(out, "bodies = {}", list(bodies.iter().map(u64::to_string)));
-    let _ = writeln!(out, "size = {}", list(bodies.iter().map(u64::to_string)));
+    let _ = writeln!(out, "bodies = {}", list(bodies.iter().map(usize::to_string)));
+    let _ = writeln!(out, "size = {}", list(bodies.iter().map(usize::to_string)));
     let (elements, subdomains) = cuts(rng, kind.dim);
     let _ = writeln!(out, "elements = {elements}\nsubdomains = {subdomains}");
     *out += &material(rng, kind, true);
     *out += &load(rng, kind);
     *out += &dirichlet(rng, kind, true);
-    let name = |at: &[u64]| {
-        let places: Vec<String> = at.iter().map(u64::to_string).collect();
+    let name = |at: &[usize]| {
+        let places: Vec<String> = at.iter().map(usize::to_string).collect();
         format!("b{}", places.join("_"))
     };
     // Pairs of neighbours.
     for _ in 0..rng.below(4) {
-        let d = rng.below(kind.dim as u64) as usize;
+        let d = rng.below(kind.dim);
         if bodies[d] < 2 {
             continue;
         }
-        let mut at: Vec<u64> = bodies.iter().map(|n| rng.below(*n)).collect();
+        let mut at: Vec<usize> = bodies.iter().map(|n| rng.below(*n)).collect();
         at[d] = rng.below(bodies[d] - 1);
         let first = name(&at);
         at[d] += 1;
@@ -351,10 +324,10 @@ fn stack(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
         }
         let mut size = vec![1.0; kind.dim];
         let mut origin = vec![0.0; kind.dim];
-        size[kind.dim - 1] = rng.number(0.5, 1.5);
+        size[kind.dim - 1] = number(rng, 0.5, 1.5);
         if !same {
-            size[0] = rng.number(0.5, 1.5);
-            origin[0] = rng.number(-0.2, 0.2);
+            size[0] = number(rng, 0.5, 1.5);
+            origin[0] = number(rng, -0.2, 0.2);
         }
         origin[kind.dim - 1] = level;
         let numbers = |v: &[f64]| list(v.iter().map(f64::to_string));
@@ -370,7 +343,7 @@ fn stack(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
         *out += &load(rng, kind);
         *out += &dirichlet(rng, kind, k == 0);
         if rng.one_in(8) {
-            let _ = writeln!(out, "spring = {{ left = {} }}", rng.number(0.1, 10.0));
+            let _ = writeln!(out, "spring = {{ left = {} }}", number(rng, 0.1, 10.0));
         }
         level += size[kind.dim - 1];
         level = (level * 1e3).round() / 1e3;
@@ -426,91 +399,4 @@ fn meshed(rng: &mut Rng, kind: &Kind, out: &mut String) -> String {
         }
     );
     mesh(rng, kind.dim, [low, high])
-}
-
-/// A mesh of Gmsh 2.2: two blocks of squares or cubes, or of triangles.
-fn mesh(rng: &mut Rng, dim: usize, [low, high]: [&str; 2]) -> String {
-    let (mut nodes, mut cells) = (Vec::new(), Vec::new());
-    let triangles = dim == 2 && rng.one_in(2);
-    for block in 0..2_usize {
-        let n: Vec<usize> = (0..3)
-            .map(|d| match (d < dim, dim) {
-                (false, _) => 0,
-                (true, 2) => rng.between(1, 6) as usize,
-                _ => rng.between(1, 3) as usize,
-            })
-            .collect();
-        let first = nodes.len() + 1;
-        let id = |i: [usize; 3]| first + i[0] + (n[0] + 1) * (i[1] + (n[1] + 1) * i[2]);
-        let up = dim - 1;
-        for k in 0..=n[2] {
-            for j in 0..=n[1] {
-                for i in 0..=n[0] {
-                    let at = [i, j, k];
-                    let mut x = [0.0; 3];
-                    for d in 0..dim {
-                        let inside = at[d] > 0 && at[d] < n[d];
-                        let moved = if inside { rng.number(-0.2, 0.2) } else { 0.0 };
-                        x[d] = (at[d] as f64 + moved) / n[d] as f64;
-                    }
-                    x[up] += block as f64;
-                    nodes.push(x);
-                }
-            }
-        }
-        let sides = |at: usize, top: bool| if top { n[up] } else { at };
-        let groups = [2 * block + 1, 2 * block + 2];
-        for k in 0..n[2].max(1) {
-            for j in 0..n[1].max(1) {
-                for i in 0..n[0] {
-                    let c = |a: usize, b: usize, c: usize| id([i + a, j + b, k + c]);
-                    let body = 5 + block;
-                    match (dim, triangles) {
-                        (2, true) => {
-                            cells.push((2, body, vec![c(0, 0, 0), c(1, 0, 0), c(1, 1, 0)]));
-                            cells.push((2, body, vec![c(0, 0, 0), c(1, 1, 0), c(0, 1, 0)]));
-                        }
-                        (2, false) => {
-                            let square = vec![c(0, 0, 0), c(1, 0, 0), c(1, 1, 0), c(0, 1, 0)];
-                            cells.push((3, body, square));
-                        }
-                        _ => {
-                            let of = |z| [c(0, 0, z), c(1, 0, z), c(1, 1, z), c(0, 1, z)];
-                            cells.push((5, body, [of(0), of(1)].concat()));
-                        }
-                    }
-                    for (top, group) in [(false, groups[0]), (true, groups[1])] {
-                        if dim == 2 && j == 0 {
-                            let y = sides(0, top);
-                            cells.push((1, group, vec![id([i, y, 0]), id([i + 1, y, 0])]));
-                        } else if dim == 3 && k == 0 {
-                            let z = sides(0, top);
-                            let at = |a, b| id([i + a, j + b, z]);
-                            cells.push((3, group, vec![at(0, 0), at(1, 0), at(1, 1), at(0, 1)]));
-                        }
-                    }
-                }
-            }
-        }
-    }
-    let mut out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n".to_string();
-    for (block, name) in ["lower", "upper"].into_iter().enumerate() {
-        let (a, b) = (2 * block + 1, 2 * block + 2);
-        let _ = write!(
-            out,
-            "{0} {a} \"{name}_{low}\"\n{0} {b} \"{name}_{high}\"\n",
-            dim - 1
-        );
-        let _ = writeln!(out, "{dim} {} \"{name}\"", 5 + block);
-    }
-    let _ = write!(out, "$EndPhysicalNames\n$Nodes\n{}\n", nodes.len());
-    for (k, x) in nodes.iter().enumerate() {
-        let _ = writeln!(out, "{} {} {} {}", k + 1, x[0], x[1], x[2]);
-    }
-    let _ = write!(out, "$EndNodes\n$Elements\n{}\n", cells.len());
-    for (k, (kind, group, of)) in cells.iter().enumerate() {
-        let of: Vec<String> = of.iter().map(usize::to_string).collect();
-        let _ = writeln!(out, "{} {kind} 2 {group} {group} {}", k + 1, of.join(" "));
-    }
-    out + "$EndElements\n"
 }

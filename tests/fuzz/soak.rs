@@ -1,6 +1,11 @@
 //! Random scenes, solved by the method and judged by the direct solution (docs/reliability.md). Compiled into the
 //! library for `make soak`, as the readers are for `make fuzz`.
 
+#[path = "mesh.rs"]
+mod mesh;
+#[path = "../support/rng.rs"]
+#[allow(dead_code)]
+mod rng;
 #[path = "scenes.rs"]
 mod scenes;
 
