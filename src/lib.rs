@@ -139,7 +139,7 @@ pub mod fuzz;
 #[path = "../tests/inside/mod.rs"]
 mod inside;
 /// What `make soak` runs.
-#[cfg(fuzzing)]
+#[cfg(any(fuzzing, all(test, feature = "cli")))]
 #[path = "../tests/fuzz/soak.rs"]
 pub mod soak;
 #[cfg(test)]

@@ -22,5 +22,6 @@ pub mod reduced;
 pub mod reference;
 pub mod refine;
 pub mod rows;
+pub mod strain;
 pub mod system;
 pub mod unknowns;

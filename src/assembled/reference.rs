@@ -9,11 +9,12 @@ use super::outer::{self, ActiveSetEnd, Solve, Tolerances};
 use super::problem::Problem;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
+use super::strain::{energy_norm, values};
 use super::system::{Copies, Format};
 use super::unknowns::Unknowns;
 use crate::mesh::contiguous_share;
 use crate::parallel::exchange::{max_all, sum_all};
-use crate::petsc::{Comm, Ksp, Scatter, Session, Vec as PetscVec};
+use crate::petsc::{Comm, Ksp, Session, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::substructures::Subdomain;
 use crate::{Error, Result};
@@ -134,23 +135,15 @@ impl<'a> Reference<'a> {
     /// # Errors
     /// PETSc's.
     pub fn values(&self, subdomains: &[Subdomain]) -> Result<Vec<Vec<f64>>> {
-        // Through contact frames and equations: u = Σ coefficient · w + offset.
-        let dofs = || subdomains.iter().flat_map(|s| &s.dofs);
-        let terms: Vec<(Vec<(u64, f64)>, f64)> = dofs()
-            .map(|&dof| self.layout.terms(self.layout.index(dof)))
-            .collect();
-        let places = terms.iter().flat_map(|(list, _)| list);
-        let places: Vec<i32> = places.map(|t| t.0 as i32).collect();
-        let w = PetscVec::seq(&self.session, places.len())?;
-        Scatter::new(&self.found.u, &places, &w)?.forward(&self.found.u, &w)?;
-        let w = w.array()?;
-        let mut w = w.iter();
-        let mut u = terms.iter().map(|(list, offset)| {
-            let each = list.iter().zip(&mut w);
-            each.map(|((_, c), w)| c * w).sum::<f64>() + offset
-        });
-        let of = |s: &Subdomain| u.by_ref().take(s.dofs.len()).collect();
-        Ok(subdomains.iter().map(of).collect())
+        values(&self.session, self.layout, &self.found.u, subdomains, true)
+    }
+
+    /// √(wᵀ K w), whatever rigid motions w has. Collective.
+    ///
+    /// # Errors
+    /// Those of the scene, and PETSc's.
+    pub fn energy_norm(&self, w: &PetscVec) -> Result<f64> {
+        energy_norm(&self.session, self.layout, &self.problem.system, w)
     }
 
     /// The distance of the u of these subdomains from the solution: in the energy norm, and by the largest
@@ -158,7 +151,7 @@ impl<'a> Reference<'a> {
     /// energy norm the mean of the copies of an unknown counts. Collective.
     ///
     /// # Errors
-    /// PETSc's.
+    /// Those of the scene, and PETSc's.
     pub fn distance(
         &self,
         subdomains: &[Subdomain],
@@ -180,13 +173,13 @@ impl<'a> Reference<'a> {
     /// The energy norm of d, relative to that of the solution. Collective.
     ///
     /// # Errors
-    /// PETSc's.
+    /// Those of the scene, and PETSc's.
     pub fn size(&self, subdomains: &[Subdomain], d: &[Vec<f64>], copies: Copies) -> Result<f64> {
         let (system, unknowns) = (&self.problem.system, Unknowns::all(self.layout));
         let (mean, _) = system.mean(&self.session, subdomains, d, &unknowns, copies)?;
         Ok(over(
-            system.energy_norm(&mean)?,
-            system.energy_norm(&self.found.u)?,
+            self.energy_norm(&mean)?,
+            self.energy_norm(&self.found.u)?,
         ))
     }
 

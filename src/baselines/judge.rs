@@ -79,7 +79,7 @@ pub fn judge(
         rows: problem.rows.len(),
         solutions: Vec::new(),
     };
-    let size = problem.system.energy_norm(&found.u)?;
+    let size = reference.energy_norm(&found.u)?;
     let d = found.u.duplicate()?;
     for (file, active) in solutions {
         d.load(file)?;
@@ -87,7 +87,7 @@ pub fn judge(
         let active = problem.rows.set(active);
         let mut one = court.judge(&d, active, Some((&holds, &counts)), &mut own)?;
         d.axpy(-1.0, &found.u)?;
-        let distance = problem.system.energy_norm(&d)?;
+        let distance = reference.energy_norm(&d)?;
         one.error = found.converged.then_some(over(distance, size));
         if !found.converged {
             one.differ = None;

@@ -34,10 +34,10 @@ mod task;
 pub use bench::{bench, cases, Benchmark};
 pub use compare::{compare, Comparison};
 pub use job::run as run_job;
-#[cfg(fuzzing)]
+#[cfg(any(fuzzing, test))]
 pub(crate) use judge::judge;
-#[cfg(fuzzing)]
+#[cfg(any(fuzzing, test))]
 pub(crate) use ours::solve as solve_ours;
 pub use table::BASELINES;
-#[cfg(fuzzing)]
+#[cfg(any(fuzzing, test))]
 pub(crate) use task::{Job, Task};

@@ -9,6 +9,7 @@ pub mod semidefinite;
 pub mod single;
 pub(crate) mod small;
 pub mod sorted;
+pub(crate) mod strained;
 pub mod symmetric;
 #[cfg(test)]
 #[path = "../../tests/inside/linalg/testing.rs"]

@@ -260,7 +260,10 @@ fn cuts(rng: &mut Rng, dim: usize) -> (String, String) {
     let elements = subdomains
         .iter()
         .map(|s| (s * rng.between(1, each)).to_string());
-    (list(elements), list(subdomains.iter().map(usize::to_string)))
+    (
+        list(elements),
+        list(subdomains.iter().map(usize::to_string)),
+    )
 }
 
 /// A grid of equal bodies.
@@ -269,7 +272,11 @@ fn grid(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
     let bodies: Vec<usize> = (0..kind.dim).map(|_| rng.between(1, most)).collect();
     let default = *rng.pick(&["tied", "contact", "contact", "free"]);
     let _ = write!(out, "[interface]\ndefault = \"{default}\"\n[grid]\n");
-    let _ = writeln!(out, "bodies = {}", list(bodies.iter().map(usize::to_string)));
+    let _ = writeln!(
+        out,
+        "bodies = {}",
+        list(bodies.iter().map(usize::to_string))
+    );
     let _ = writeln!(out, "size = {}", list(bodies.iter().map(usize::to_string)));
     let (elements, subdomains) = cuts(rng, kind.dim);
     let _ = writeln!(out, "elements = {elements}\nsubdomains = {subdomains}");

@@ -10,5 +10,6 @@ mod petsc_mpi;
 mod petsc_options;
 mod petsc_shells;
 mod report_contact;
+mod soak;
 mod support;
 mod traffic;

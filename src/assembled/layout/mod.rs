@@ -202,6 +202,11 @@ impl<'a> Layout<'a> {
         places
     }
 
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
     fn frame(&self, block: u64) -> &Frame {
         self.frames.get(&block).unwrap_or(&Frame::IDENTITY)
     }

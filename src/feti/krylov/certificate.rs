@@ -2,10 +2,10 @@
 //! B alone.
 
 use super::leftover::Leftover;
-use super::strained::strained;
 use crate::feti::jump::columns::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
+use crate::linalg::strained::strained;
 use crate::parallel::exchange::{max_all, min_all, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::{Subdomain, Substructures};

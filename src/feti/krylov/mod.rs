@@ -17,7 +17,6 @@ pub mod refinement;
 pub mod residual;
 pub(super) mod shells;
 pub mod solve;
-mod strained;
 pub mod system;
 pub mod tally;
 pub mod target;

@@ -98,3 +98,28 @@ fn what_nothing_holds_has_no_solution_and_springs_hold() {
         assert!(alone("x - 0.5").is_ok());
     });
 }
+
+#[test]
+fn a_motion_without_energy_is_no_error() {
+    with_session(|session| {
+        // The round obstacle touches without force, and nothing else holds the block sideways.
+        let text = "dimension = 2\nphysics = \"elasticity\"\n[[body]]\nname = \"one\"\norigin = [0, 0]\nsize = [1, 1]\n\
+                    elements = 4\nsubdomains = [2, 1]\nyoung = 1e5\npoisson = 0.3\nload = [0, -1]\n\
+                    dirichlet = { bottom = { y = 0 } }\n[[obstacle]]\nbody = \"one\"\nside = \"bottom\"\n\
+                    cylinder = { centre = [0, -5.1], radius = 5 }\n";
+        let scene = Scene::parse("one.toml", text).expect("a scene");
+        let layout = Layout::new(&scene);
+        assert_eq!(layout.loose(), 0);
+        let parts = subdomains(&scene);
+        let direct = Reference::certified(session, &scene, &layout).expect("a solution");
+        let mut moved = direct.values(&parts).expect("values");
+        for (s, u) in parts.iter().zip(&mut moved) {
+            let x = s.dofs.iter().zip(u).filter(|(dof, _)| **dof % 2 == 0);
+            x.for_each(|(_, u)| *u += 0.3);
+        }
+        let away = direct
+            .distance(&parts, &moved, Copies::Alike)
+            .expect("a distance");
+        assert!(away[0] < 1e-11, "{away:?}");
+    });
+}

@@ -4,17 +4,17 @@
 //! so that K u has forces of ε ‖K‖ |u| that K (u − R α) has not. Their resultant is carried by the softer neighbours:
 //! with E in the ratio 10¹² it is one per cent of the load, and (u, λ) seem to be wrong by as much.
 
-use crate::linalg::csr::Csr;
+use super::csr::Csr;
 
 /// A subdomain moves rigidly if uᵀK u is below this part of Σ d u², d = diag(K).
-const RIGID: f64 = 1e-8;
+pub(crate) const RIGID: f64 = 1e-8;
 
 /// A column lies in the kernel of K if ‖K q‖ is below this part of ‖q‖, in the norms of D⁻¹ and D.
 const KERNEL: f64 = 1e-12;
 
 /// u without the part in the kernel of K, if the subdomain moves rigidly; `energy` is uᵀK u, d the diagonal of K, and
 /// the columns span the kernels that K could have.
-pub(super) fn strained(
+pub(crate) fn strained(
     k: &Csr,
     columns: Option<&[Vec<f64>]>,
     d: &[f64],
@@ -60,5 +60,5 @@ pub(super) fn strained(
 }
 
 #[cfg(test)]
-#[path = "../../../tests/inside/feti/krylov/strained.rs"]
+#[path = "../../tests/inside/linalg/strained.rs"]
 mod tests;

@@ -1,4 +1,4 @@
-//! Unit tests of `src/feti/krylov/strained.rs`.
+//! Unit tests of `src/linalg/strained.rs`.
 
 use super::*;
 
