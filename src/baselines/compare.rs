@@ -49,7 +49,7 @@ pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
             baseline.set_options(session, plan.rtol, Case::of(&scene))?;
         }
     }
-    on_first_rank(session, || run(wanted, &scene, &plan))
+    on_first_rank(session, || run(session, wanted, &scene, &plan))
 }
 
 /// Does `work` on rank 0; the other ranks sleep until it is done, to leave the cores to the jobs. Collective.
@@ -74,7 +74,7 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 }
 
 /// On rank 0: all jobs one after the other, then the judge, then the tables.
-fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
+fn run(session: &Session, wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
     let Comparison { destination, .. } = wanted;
     destination.prepare()?;
     // Temporary files go when a signal ends this.
@@ -84,6 +84,7 @@ fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
         workspace: Workspace::new()?,
         limit: plan.limit,
         petsc: forwarded(&wanted.petsc),
+        session: Some(session.clone()),
     };
     let file = std::fs::canonicalize(&wanted.scene).unwrap_or_else(|_| wanted.scene.clone());
     let mut methods = Methods::new(&launcher, plan, scene, file);

@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use serde::Serialize;
 
 use crate::petsc::signals::{self, Signals};
-use crate::petsc::Session;
+use crate::petsc::{Options, Session};
 use crate::report::json;
 use crate::{Error, Result};
 
@@ -65,6 +65,8 @@ pub struct Launcher {
     pub limit: Duration,
     /// PETSc's arguments for every job.
     pub petsc: Vec<String>,
+    /// Whose options jobs ask for, too; `None` where jobs have options of their own.
+    pub session: Option<Session>,
 }
 
 /// The reason why a job has no result.
@@ -112,6 +114,7 @@ impl Launcher {
         let [job, out, err] = &files;
         // The record of an earlier job must not be taken for that of this one.
         let _ = std::fs::remove_file(record(job));
+        let _ = std::fs::remove_file(asked(job));
         json::write(job, task)?;
         let create = |path: &Path| {
             File::create(path)
@@ -163,10 +166,26 @@ impl Launcher {
             }),
             Err(_) => Err(self.failure(status, clock.elapsed(), &text(err))),
         };
+        self.note_asked(job)?;
         Ok(Finished {
             printed: text(out),
             record,
         })
+    }
+
+    /// Marks the options that the job has asked for as asked for; all that it was given, if it does not say.
+    fn note_asked(&self, job: &Path) -> Result<()> {
+        let Some(session) = &self.session else {
+            return Ok(());
+        };
+        let told = std::fs::read_to_string(asked(job));
+        let told = told.ok().and_then(|t| serde_json::from_str(&t).ok());
+        let asked: Vec<String> = told.unwrap_or_else(|| self.petsc.clone());
+        let all = Options::new(session, "");
+        for name in asked.iter().filter_map(|name| name.strip_prefix('-')) {
+            all.has(name)?;
+        }
+        Ok(())
     }
 
     fn failure(&self, status: ExitStatus, took: Duration, stderr: &str) -> Failure {
@@ -245,13 +264,21 @@ pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> 
     }))
 }
 
-/// Writes the record of the job in `file` on rank 0. Collective.
+/// Writes the record of the job in `file` on rank 0, and the options that it has asked for. Collective.
 ///
 /// # Errors
 /// [`Error::Environment`] with the path.
 pub fn leave<T: Serialize>(session: &Session, file: &Path, found: &T) -> Result<()> {
+    let write = || {
+        let all = Options::new(session, "");
+        let left: Vec<String> = all.left()?.into_iter().map(|(name, _)| name).collect();
+        let mut names: Vec<String> = all.all()?.into_iter().map(|(name, _)| name).collect();
+        names.retain(|name| !left.contains(name));
+        json::write(&asked(file), &names)?;
+        json::write(&record(file), found)
+    };
     session.agree(match session.rank() {
-        0 => json::write(&record(file), found),
+        0 => write(),
         _ => Ok(()),
     })
 }
@@ -259,6 +286,11 @@ pub fn leave<T: Serialize>(session: &Session, file: &Path, found: &T) -> Result<
 /// The file for the record of the job in `file`.
 fn record(file: &Path) -> PathBuf {
     file.with_extension("json")
+}
+
+/// The file for the options that the job in `file` has asked for.
+fn asked(file: &Path) -> PathBuf {
+    file.with_extension("asked")
 }
 
 /// The program's own error message among the output of mpirun and other ranks, or else the first message of mpirun.

@@ -26,6 +26,7 @@ pub fn baseline(
         workspace: Workspace::new()?,
         limit: Duration::from_secs(seconds),
         petsc: options.iter().map(|o| o.to_string()).collect(),
+        session: None,
     };
     let job = Job {
         scene: scene.to_path_buf(),

@@ -80,9 +80,9 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     if command.json_on_stdout() {
         petsc::print_on_stderr(session);
     }
-    let done = carry_out(session, command.clone(), petsc);
+    let done = carry_out(session, command.clone(), petsc.clone());
     if let (Ok(()) | Err(Error::NotConverged(_)), 0) = (&done, session.rank()) {
-        if let Some(warning) = unused::warning(session, &command)? {
+        if let Some(warning) = unused::warning(session, &command, &petsc)? {
             eprintln!("{warning}");
         }
     }

@@ -21,7 +21,7 @@ pub(crate) fn available(ranks: usize) -> Option<Available> {
             "of the machine (MemAvailable)",
         ),
         (
-            of_group().map(|b| share * b),
+            of_group(Path::new("/")).map(|b| share * b),
             "of the group of processes (cgroup)",
         ),
         (of_process(), "of the address space (ulimit -v)"),
@@ -47,31 +47,65 @@ fn of_process() -> Option<f64> {
     Some((limit - taken).max(0.0))
 }
 
-/// What is left of the limit of the control group, version 2; the cache of files does not count as taken.
-fn of_group() -> Option<f64> {
-    let groups = read_to_string("/proc/self/cgroup").ok()?;
-    let own = groups.lines().find_map(|l| l.strip_prefix("0::"))?;
-    let root = Path::new("/sys/fs/cgroup");
-    let mut least: Option<f64> = None;
-    // The groups around it have limits, too.
-    for group in Path::new(own.trim_start_matches('/')).ancestors() {
-        let number = |file: &str| -> Option<f64> {
-            let text = read_to_string(root.join(group).join(file)).ok()?;
-            text.trim().parse().ok()
-        };
-        let (Some(limit), Some(taken)) = (number("memory.max"), number("memory.current")) else {
-            continue;
-        };
-        let statistics = read_to_string(root.join(group).join("memory.stat")).unwrap_or_default();
-        let cache = ["inactive_file ", "active_file "].map(|key| {
+/// What is left of the limits of the control groups of this process below the directory `root`, `/` in life.
+fn of_group(root: &Path) -> Option<f64> {
+    let groups = read_to_string(root.join("proc/self/cgroup")).ok()?;
+    let mounted = root.join("sys/fs/cgroup");
+    let left = groups.lines().filter_map(|line| {
+        // hierarchy:controllers:path, with nothing between the colons in version 2.
+        let (_, rest) = line.split_once(':')?;
+        let (controllers, own) = rest.split_once(':')?;
+        match controllers {
+            "" => least(&mounted, own, &VERSION_2),
+            _ if controllers.split(',').any(|c| c == "memory") => {
+                least(&mounted.join("memory"), own, &VERSION_1)
+            }
+            _ => None,
+        }
+    });
+    left.min_by(f64::total_cmp)
+}
+
+/// Names in the directory of a control group.
+struct Names {
+    limit: &'static str,
+    taken: &'static str,
+    /// The lines of memory.stat with the cache of files, which does not count as taken; of the group and those in it.
+    cache: [&'static str; 2],
+}
+
+const VERSION_1: Names = Names {
+    limit: "memory.limit_in_bytes",
+    taken: "memory.usage_in_bytes",
+    cache: ["total_inactive_file ", "total_active_file "],
+};
+const VERSION_2: Names = Names {
+    limit: "memory.max",
+    taken: "memory.current",
+    cache: ["inactive_file ", "active_file "],
+};
+
+/// What is no limit in version 1, a number near 2⁶³.
+const NO_LIMIT: f64 = 1e18;
+
+/// The least that is left in the group `own` and in those around it, which have limits, too. In a container the groups
+/// outside are not mounted, and its own may be the directory `mounted` itself.
+fn least(mounted: &Path, own: &str, names: &Names) -> Option<f64> {
+    let left = |group: &Path| -> Option<f64> {
+        let read = |file: &str| read_to_string(mounted.join(group).join(file)).ok();
+        let number = |file: &str| -> Option<f64> { read(file)?.trim().parse().ok() };
+        let limit = number(names.limit).filter(|l| *l < NO_LIMIT)?;
+        let taken = number(names.taken)?;
+        let statistics = read("memory.stat").unwrap_or_default();
+        let cache = names.cache.map(|key| {
             let line = statistics.lines().find_map(|l| l.strip_prefix(key));
             line.and_then(|l| l.trim().parse::<f64>().ok())
                 .unwrap_or(0.0)
         });
-        let left = (limit - taken + cache[0] + cache[1]).max(0.0);
-        least = Some(least.map_or(left, |b| b.min(left)));
-    }
-    least
+        Some((limit - taken + cache[0] + cache[1]).max(0.0))
+    };
+    let own = Path::new(own.trim_start_matches('/'));
+    own.ancestors().filter_map(left).min_by(f64::total_cmp)
 }
 
 /// The value of a line such as `MemAvailable:   1234 kB`, in bytes.
@@ -80,3 +114,7 @@ fn kilobytes(text: &str, key: &str) -> Option<f64> {
     let number: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(1024.0 * number)
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/parallel/available.rs"]
+mod tests;

@@ -15,6 +15,8 @@ mod eps;
 mod handle;
 mod heap;
 mod is;
+#[cfg(feature = "cli")]
+mod known;
 mod ksp;
 mod log;
 mod mat;
@@ -38,6 +40,8 @@ pub use eps::{End, Eps, ProblemType, Settled, Which};
 pub use handle::Handle;
 pub use heap::{let_threads_allocate, Heap};
 pub use is::Is;
+#[cfg(feature = "cli")]
+pub(crate) use known::known;
 pub use ksp::{ConvergedReason, Ksp, NormType};
 pub use log::{counters, Counters, Event, Scope, Stage};
 pub use mat::{Mat, MatFlag};

@@ -69,7 +69,9 @@ impl Options {
 
     /// The text of an option; empty where it was given without a value.
     pub fn get_string(&self, name: &str) -> Result<Option<String>> {
-        let full = c_string(&self.full_name(name));
+        let full = self.full_name(name);
+        self.session.note_asked(&full);
+        let full = c_string(&full);
         let mut buffer = vec![0 as c_char; 1 << 14];
         let mut set = Flag::of(false);
         petsc!(PetscOptionsGetString(

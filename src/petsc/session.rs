@@ -9,7 +9,7 @@ use mpi::traits::Communicator;
 use petsc_sys as sys;
 use petsc_sys::Flag;
 use std::cell::{Cell, RefCell};
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ffi::{c_char, c_int};
 use std::mem::{ManuallyDrop, MaybeUninit};
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -51,6 +51,8 @@ struct Inner {
     began_slepc: Cell<bool>,
     /// Options that `-help` has listed.
     pub(super) listed: RefCell<HashSet<String>>,
+    /// Options that our own code has asked for, with their dash.
+    pub(super) asked: RefCell<BTreeSet<String>>,
 }
 
 impl Session {
@@ -153,6 +155,7 @@ impl Session {
             owned,
             began_slepc: Cell::new(false),
             listed: RefCell::default(),
+            asked: RefCell::default(),
         })))
     }
 
@@ -183,6 +186,20 @@ impl Session {
     /// True the first time that `-help` meets this key.
     pub(crate) fn list_once(&self, key: &str) -> bool {
         self.0.listed.borrow_mut().insert(key.to_string())
+    }
+
+    /// Notes that our own code has asked for an option.
+    pub(crate) fn note_asked(&self, name: &str) {
+        let mut asked = self.0.asked.borrow_mut();
+        if !asked.contains(name) {
+            asked.insert(name.to_string());
+        }
+    }
+
+    /// The options that our own code has asked for so far, with their dash.
+    #[cfg(feature = "cli")]
+    pub(crate) fn asked(&self) -> BTreeSet<String> {
+        self.0.asked.borrow().clone()
     }
 
     /// Initialises SLEPc if nobody has.

@@ -23,24 +23,10 @@ fn a_misspelt_option_is_a_warning_on_standard_error() {
         let report = json(&out.stdout);
         // That of the scene.
         assert_eq!(report["rtol"], 1e-10, "{report}");
-        let warned = "Warning: nobody has asked for -fetifeti_ksp_rtoll: misspelt";
+        let warned = "Warning: nobody has asked for -fetifeti_ksp_rtoll (did you mean -fetifeti_ksp_rtol?): misspelt";
         assert_eq!(out.stderr.matches(warned).count(), 1, "{}", out.all());
     }
-    // Options of other programs in PETSC_OPTIONS are none of ours; PETSc's own list takes the place of the warning.
-    for (option, expected) in [
-        ("-other_rtol", ""),
-        ("-fetifeti_tolerance", "-fetifeti_tolerance"),
-    ] {
-        let out = fetifeti(&["solve", SCENE, "--quiet", option, "1e-9"]);
-        assert_eq!(out.code, 0, "{}", out.all());
-        assert_eq!(
-            out.stderr.contains("Warning"),
-            !expected.is_empty(),
-            "{}",
-            out.all()
-        );
-        assert!(out.stderr.contains(expected), "{}", out.all());
-    }
+    // PETSc's own list takes the place of the warning.
     let out = fetifeti(&[
         "solve",
         SCENE,
@@ -50,6 +36,75 @@ fn a_misspelt_option_is_a_warning_on_standard_error() {
     ]);
     assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
     assert!(out.stdout.contains("-fetifeti_tolerance"), "{}", out.all());
+}
+
+/// What every command says of options: those that nobody knows with the nearest name, none of those that it knows.
+#[test]
+fn every_command_warns_of_misspelt_options() {
+    let small = "examples/scenes/poisson_2x2.toml";
+    let warned = |args: &[&str], expected: &[&str]| {
+        let out = fetifeti(args);
+        assert_eq!(out.code, 0, "{args:?}: {}", out.all());
+        let line = out
+            .stderr
+            .lines()
+            .find(|l| l.starts_with("Warning: nobody"));
+        for name in expected {
+            let line = line.unwrap_or_else(|| panic!("{args:?}: {}", out.all()));
+            assert!(line.contains(name), "{args:?}: no {name} in {line}");
+        }
+        let names = line.map_or(0, |l| l.matches('-').count());
+        let expected = expected.join(" ").matches('-').count();
+        // One of the last words of the sentence.
+        let own = usize::from(line.is_some());
+        assert_eq!(names, expected + own, "{args:?}: {}", out.all());
+    };
+    let right = [
+        "-fetifeti_ksp_rtol",
+        "1e-7",
+        "-fetifeti_contact_max_it",
+        "9",
+        "-fetifeti_coarse_pc_factor_mat_solver_type",
+        "mumps",
+        "-fetifeti_coarse_mat_mumps_icntl_14",
+        "30",
+        "-fetifeti_ksp_converged_reason",
+        "-log_view",
+        ":/dev/null",
+    ];
+    warned(&[&["plan", small][..], &right].concat(), &[]);
+    let meant = "-fetifeti_ksp_rtl (did you mean -fetifeti_ksp_rtol?)";
+    let wrong = ["-fetifeti_ksp_rtl", "1", "-ksp_rtol", "1"];
+    let both = [meant, "-ksp_rtol (did you mean -fetifeti_ksp_rtol?)"];
+    warned(&[&["plan", small][..], &wrong].concat(), &both);
+    warned(&[&["solve", small, "--quiet"][..], &wrong].concat(), &both);
+    warned(
+        &[&["table1", "--rows", "2,1,2", "--quiet"][..], &wrong].concat(),
+        &both,
+    );
+    let jobs = [
+        "compare",
+        small,
+        "--with",
+        "mumps",
+        "--quiet",
+        "-fetifeti_ksp_type",
+        "pipecg",
+        "-mumps_mat_mumps_icntl_14",
+        "30",
+        "-fetifeti_ksp_rtl",
+        "1",
+        "-compare_maxranks",
+        "9",
+    ];
+    warned(
+        &jobs,
+        &[
+            "-compare_maxranks (did you mean -compare_max_ranks?)",
+            meant,
+        ],
+    );
+    warned(&["bench", "--list", "-x"], &["-x"]);
 }
 
 #[test]

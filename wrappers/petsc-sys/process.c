@@ -79,3 +79,41 @@ double ff_max_memory(void)
   return 1024.0 * (double)usage.ru_maxrss;
 #endif
 }
+
+/* The streams to which PETSc prints, while another one keeps it: its own, and that of C for lists of types, which the C
+   library of GNU lets us replace. */
+static FILE  *printed_to, *keeping;
+#ifdef __GLIBC__
+static FILE *printed_too;
+#endif
+static char  *kept;
+static size_t kept_length;
+
+int ff_print_keep(void)
+{
+  kept    = NULL;
+  keeping = open_memstream(&kept, &kept_length);
+  if (!keeping) return 0;
+  printed_to   = PETSC_STDOUT;
+  PETSC_STDOUT = keeping;
+#ifdef __GLIBC__
+  printed_too = stdout;
+  stdout      = keeping;
+#endif
+  return 1;
+}
+
+char *ff_print_kept(void)
+{
+  PETSC_STDOUT = printed_to;
+#ifdef __GLIBC__
+  stdout = printed_too;
+#endif
+  (void)fclose(keeping);
+  return kept;
+}
+
+void ff_print_free(char *text)
+{
+  free(text);
+}

@@ -73,6 +73,11 @@ int ff_event_begin(int event);
 int ff_event_end(int event);
 int ff_citation(const char *text, int *set);
 int ff_help_print(MPI_Comm comm, const char *text);
+/* Keeps what PETSc prints on standard output from now on, instead of printing it; 0 if there is no memory. */
+int ff_print_keep(void);
+/* Prints it again; what was kept, to be freed by ff_print_free. */
+char *ff_print_kept(void);
+void ff_print_free(char *kept);
 int ff_viewer_print(PetscViewer viewer, const char *text);
 int ff_viewer_is_ascii(PetscViewer viewer, int *ascii);
 int ff_free(void *memory);

@@ -83,7 +83,7 @@ pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
         })
         .collect();
     let cases = cases?;
-    on_first_rank(session, || run(wanted, &cases))
+    on_first_rank(session, || run(session, wanted, &cases))
 }
 
 /// The cases, one line each.
@@ -138,7 +138,7 @@ impl Case {
 }
 
 /// On rank 0: case by case, round by round.
-fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
+fn run(session: &Session, wanted: &Benchmark, cases: &[Case]) -> Result<()> {
     let Benchmark { destination, .. } = wanted;
     destination.prepare()?;
     let mut report = BenchReport {
@@ -150,7 +150,7 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
         quick: wanted.quick,
         cases: Vec::new(),
     };
-    let done = rounds(wanted, cases, &mut report);
+    let done = rounds(session, wanted, cases, &mut report);
     if let (Err(error), Some(_)) = (&done, Signals::noted()) {
         // The results so far are results.
         write(destination, cases, &report)?;
@@ -163,7 +163,12 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
 }
 
 /// All rounds of all cases, into the report as they come.
-fn rounds(wanted: &Benchmark, cases: &[Case], report: &mut BenchReport) -> Result<()> {
+fn rounds(
+    session: &Session,
+    wanted: &Benchmark,
+    cases: &[Case],
+    report: &mut BenchReport,
+) -> Result<()> {
     let Benchmark { destination, .. } = wanted;
     let each = cases.iter().map(|c| wanted.rounds * c.plan.runs.len());
     let mut pace = Pace::new(each.sum());
@@ -172,6 +177,7 @@ fn rounds(wanted: &Benchmark, cases: &[Case], report: &mut BenchReport) -> Resul
             workspace: Workspace::new()?,
             limit: case.plan.limit,
             petsc: forwarded(&wanted.petsc),
+            session: Some(session.clone()),
         };
         let mut methods = Methods::new(&launcher, &case.plan, &case.scene, case.file.clone());
         methods.again = true;

@@ -146,6 +146,7 @@ pub fn run(
         workspace: Workspace::new()?,
         limit: settings.limit,
         petsc,
+        session: Some(session.clone()),
     };
     progress("messages");
     let network = messages(&launcher)?;
