@@ -12,7 +12,7 @@ use super::surface::Surface;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Outcome, Torn, Work};
 use crate::error::Fault;
-use crate::parallel::exchange::{gather_all, highest};
+use crate::parallel::exchange::{exchange_words, gather_all, highest};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
@@ -317,14 +317,19 @@ impl Object {
     ) -> Result<HashSet<u32>> {
         let marks = layout.duplicate()?;
         marks.set(0.0)?;
-        let words: Vec<u64> = list.iter().map(|&d| d as u64).collect();
+        let comm = self.session.comm();
         let range = marks.ownership_range();
+        let starts = gather_all(comm, &[range.start as u64]).concat();
+        let mut outgoing = vec![Vec::new(); starts.len()];
+        for &dof in list {
+            // The last rank that starts at or before the unknown: one without unknowns starts where the next one does.
+            let owner = starts.partition_point(|&s| s <= dof as u64) - 1;
+            outgoing[owner].push(dof as u64);
+        }
         {
             let mut entries = marks.array_mut()?;
-            for dof in gather_all(self.session.comm(), &words).concat() {
-                if range.contains(&(dof as usize)) {
-                    entries[dof as usize - range.start] = 1.0;
-                }
+            for dof in exchange_words(comm, outgoing).concat() {
+                entries[dof as usize - range.start] = 1.0;
             }
         }
         let mut values = vec![0.0; ghosts.len()];

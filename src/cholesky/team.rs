@@ -130,6 +130,14 @@ impl Team {
         (self.own_rows.len(), self.top_rows.len())
     }
 
+    /// The number of the first row of this rank's subtrees in vectors that no rank has whole.
+    pub fn first_own(&self) -> u32 {
+        match self.own_rows.first().map(|&row| self.places[row as usize]) {
+            Some(Place::Subtree { number, .. }) => number,
+            _ => 0,
+        }
+    }
+
     /// The dofs of this rank's subtrees, in the order in which their entries are kept.
     pub fn own_dofs(&self) -> impl Iterator<Item = u32> + '_ {
         self.own_rows

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::restore::ByColumn;
 use crate::feti::operators::dual::Dual;
+use crate::feti::projector::by_column::ByColumn;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
 use crate::linalg::union_find::UnionFind;

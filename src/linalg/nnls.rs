@@ -5,6 +5,9 @@ use super::dense::Dense;
 /// Gradients below this, relative to ‖b‖ and the column, are zero.
 const TOLERANCE: f64 = 1e-12;
 
+/// Columns are dependent if a pivot is below this, relative to the largest one.
+const DEPENDENT: f64 = 1e-12;
+
 /// Minimises ‖A x − b‖₂ with x_j ≥ 0 where `free[j]` is false. Returns x and the residual b − A x. The residual is a
 /// certificate in the sense of Farkas' lemma: it is orthogonal to the free columns, has no positive product with the
 /// others, and is zero if and only if b is in the cone.
@@ -63,36 +66,21 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
     (x, r)
 }
 
-/// Minimises ‖A z − b‖ over the given columns; returns the shortest minimiser where they are dependent.
+/// Minimises ‖A z − b‖ over the given columns; returns the shortest minimiser where they are dependent. A Π = Q [R₁; 0]
+/// with pivoted columns, then R₁ᵀ = Q₂ R₂ and z = Π Q₂ R₂⁻ᵀ Q₁ᵀ b. This takes a tenth of the time of singular values.
 fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
     let part = faer::Mat::from_fn(a.rows, columns.len(), |i, k| a.get(i, columns[k]));
-    // The iteration for singular values gives some finite matrices up.
-    let Ok(svd) = part.thin_svd() else {
-        return by_factors(&part, b);
-    };
-    let sigma = svd.S().column_vector();
-    let mut z = vec![0.0; columns.len()];
-    for l in 0..sigma.nrows() {
-        if sigma[l] > 1e-12 * sigma[0] {
-            let c: f64 = (0..a.rows).map(|i| svd.U()[(i, l)] * b[i]).sum::<f64>() / sigma[l];
-            z.iter_mut()
-                .enumerate()
-                .for_each(|(k, z)| *z += c * svd.V()[(k, l)]);
-        }
-    }
-    z
-}
-
-/// The shortest minimiser of ‖A z − b‖ without an iteration: A Π = Q [R₁; 0] with pivoted columns, then R₁ᵀ = Q₂ R₂ and
-/// z = Π Q₂ R₂⁻ᵀ Q₁ᵀ b.
-fn by_factors(a: &faer::Mat<f64>, b: &[f64]) -> Vec<f64> {
-    let pivoted = a.col_piv_qr();
+    let pivoted = part.col_piv_qr();
     let (q, r) = (pivoted.compute_thin_Q(), pivoted.thin_R());
-    let largest = r[(0, 0)].abs();
     let diagonal = 0..r.nrows().min(r.ncols());
-    let rank = diagonal.take_while(|&i| r[(i, i)].abs() > 1e-12 * largest);
+    let largest = if diagonal.is_empty() {
+        0.0
+    } else {
+        r[(0, 0)].abs()
+    };
+    let rank = diagonal.take_while(|&i| r[(i, i)].abs() > DEPENDENT * largest);
     let rank = rank.count();
-    let across = faer::Mat::from_fn(a.ncols(), rank, |i, k| match k <= i {
+    let across = faer::Mat::from_fn(columns.len(), rank, |i, k| match k <= i {
         true => r[(k, i)],
         false => 0.0,
     });
@@ -100,12 +88,12 @@ fn by_factors(a: &faer::Mat<f64>, b: &[f64]) -> Vec<f64> {
     let (q2, r2) = (second.compute_thin_Q(), second.thin_R());
     let mut c: Vec<f64> = Vec::with_capacity(rank);
     for k in 0..rank {
-        let own: f64 = (0..a.nrows()).map(|i| q[(i, k)] * b[i]).sum();
+        let own: f64 = (0..a.rows).map(|i| q[(i, k)] * b[i]).sum();
         let known: f64 = (0..k).map(|l| r2[(l, k)] * c[l]).sum();
         c.push((own - known) / r2[(k, k)]);
     }
     let (order, _) = pivoted.P().arrays();
-    let mut z = vec![0.0; a.ncols()];
+    let mut z = vec![0.0; columns.len()];
     for (k, &column) in order.iter().enumerate() {
         z[column] = (0..rank).map(|l| q2[(k, l)] * c[l]).sum();
     }

@@ -21,7 +21,7 @@ use mpi::traits::Communicator;
 use super::applied::Applied;
 use super::averaging::Averaging;
 use super::coarse_functions::recipes;
-use super::factor::BodyFactor;
+use super::factor::{shares, BodyFactor};
 use super::interpolation::Functions;
 use super::matrix::Sums;
 use super::stored::Stored;
@@ -96,11 +96,11 @@ impl Lifting {
         }
         drop(sums);
         let received = exchange_words(comm, outgoing);
-        let bodies = stiffness.team.map(space.owned.len(), |b| {
-            let range = &space.owned[b].range;
-            let first = (space.first + range.start) as u32;
-            BodyFactor::new(&received, first..first + range.len() as u32, space.first)
-        });
+        let owned: Vec<_> = space.owned.iter().map(|b| b.range.clone()).collect();
+        let shares = shares(&received, &owned, space.first);
+        let bodies = stiffness
+            .team
+            .map(shares.len(), |b| BodyFactor::new(&shares[b], space.first));
         let sizes = bodies.iter().map(BodyFactor::rank_and_order);
         let (rank, order) = sizes.fold((0, 0), |(r, o), (rank, order)| (r + rank, o + order));
         if !any(comm, order > 0) {

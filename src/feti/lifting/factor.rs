@@ -32,19 +32,43 @@ enum Factor {
     Dense(Semidefinite),
 }
 
+/// What a subdomain adds to A: columns, and the lower triangle of its block.
+pub(crate) type Share<'a> = (&'a [u64], &'a [u64]);
+
+/// The shares of each owned body, in the order of the ranks: `owned` has its primal dofs, those of this rank begin at
+/// `first`. `received` has the messages that `Sum::pack` has written.
+pub(crate) fn shares<'a>(
+    received: &'a [Vec<u64>],
+    owned: &[Range<usize>],
+    first: usize,
+) -> Vec<Vec<Share<'a>>> {
+    let mut out = vec![Vec::new(); owned.len()];
+    for mut words in received.iter().map(|w| &w[..]) {
+        while let [n, tail @ ..] = words {
+            let n = *n as usize;
+            let (columns, tail) = tail.split_at(n);
+            let (values, tail) = tail.split_at(n * (n + 1) / 2);
+            words = tail;
+            // All columns are of one body.
+            if let Some(&column) = columns.first() {
+                let at = column as usize - first;
+                let body = owned.partition_point(|range| range.end <= at);
+                out[body].push((columns, values));
+            }
+        }
+    }
+    out
+}
+
 impl BodyFactor {
-    /// A of the body with the primal dofs `body`; those of this rank begin at `first`. `received` has the messages that
-    /// [`Sum::pack`] has written.
-    pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
-        let mut columns = Vec::new();
-        each(received, &body, |c, _| columns.extend_from_slice(c));
+    /// A of a body from its shares; the primal dofs of this rank begin at `first`.
+    pub fn new(shares: &[Share<'_>], first: usize) -> BodyFactor {
+        let columns = shares.iter().flat_map(|s| s.0.iter().copied());
         let columns = distinct(columns);
         let place = |g: &u64| columns.binary_search(g).expect("it was collected") as u32;
-        let (mut lists, mut blocks) = (Vec::new(), Vec::new());
-        each(received, &body, |theirs, values| {
-            lists.push(theirs.iter().map(place).collect::<Vec<u32>>());
-            blocks.push(values);
-        });
+        let lists = shares.iter().map(|s| s.0.iter().map(place).collect());
+        let lists: Vec<Vec<u32>> = lists.collect();
+        let blocks: Vec<&[u64]> = shares.iter().map(|s| s.1).collect();
         let n = columns.len();
         let factor = sparse(n, &lists, &blocks).map_or_else(
             || Factor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
@@ -72,26 +96,6 @@ impl BodyFactor {
             Factor::Dense(factor) => factor.solve(&mut part),
         }
         self.at.iter().zip(&part).for_each(|(&i, v)| x[i] = *v);
-    }
-}
-
-/// Columns and lower triangle of each sum that belongs to one body.
-fn each<'a>(
-    received: &'a [Vec<u64>],
-    body: &Range<u32>,
-    mut see: impl FnMut(&'a [u64], &'a [u64]),
-) {
-    for mut words in received.iter().map(|w| &w[..]) {
-        while let [n, tail @ ..] = words {
-            let n = *n as usize;
-            let (columns, tail) = tail.split_at(n);
-            let (values, tail) = tail.split_at(n * (n + 1) / 2);
-            words = tail;
-            // All columns are of one body.
-            if n > 0 && body.contains(&(columns[0] as u32)) {
-                see(columns, values);
-            }
-        }
     }
 }
 

@@ -9,6 +9,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::pattern::Pattern;
+use super::raised::Raised;
 use crate::cholesky::dissection::nested_dissection;
 use crate::cholesky::shared::SharedCholesky;
 use crate::cholesky::symbolic::Symbolic;
@@ -142,21 +143,23 @@ impl Shape {
 }
 
 /// A factor of A = GᵀG, scaled to a unit diagonal.
-enum Factor {
+pub(super) enum Factor {
     Dense(Semidefinite),
     Sparse {
         factor: SharedCholesky,
         /// Zero for columns that are left out.
         scale: Vec<f64>,
     },
+    /// That of fewer rows, and some more rows.
+    Raised(Box<Raised>),
 }
 
 /// GᵀG, factored; dependent columns are left out. Answers are the same on every rank.
 pub struct Gram {
-    factor: Factor,
+    pub(super) factor: Factor,
     /// Columns that are left out, increasing.
     pub dropped: Vec<u32>,
-    /// A basis of the motions on which the rows vanish: one for each column that is left out.
+    /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
 }
 
@@ -249,6 +252,7 @@ impl Gram {
                 factor.solve(x);
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
             }
+            Factor::Raised(raised) => raised.solve(x),
         }
     }
 
@@ -257,8 +261,10 @@ impl Gram {
     /// # Panics
     /// If the columns are few.
     pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
-        let Factor::Sparse { factor, scale } = &self.factor else {
-            unreachable!("few columns are not shared")
+        let (factor, scale) = match &self.factor {
+            Factor::Sparse { factor, scale } => (factor, scale),
+            Factor::Raised(raised) => return raised.solve_shares(own, top),
+            Factor::Dense(_) => unreachable!("few columns are not shared"),
         };
         let scaled = |own: &mut [f64], top: &mut [f64]| {
             let times = |(v, c): (&mut f64, u32)| *v *= scale[c as usize];
@@ -275,12 +281,13 @@ impl Gram {
         match &self.factor {
             Factor::Dense(factor) => factor.n(),
             Factor::Sparse { scale, .. } => scale.len(),
+            Factor::Raised(raised) => raised.base().n(),
         }
     }
 
     /// Whether the factor is a sparse one.
     pub fn is_sparse(&self) -> bool {
-        matches!(self.factor, Factor::Sparse { .. })
+        !matches!(self.factor, Factor::Dense(_))
     }
 }
 

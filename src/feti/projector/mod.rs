@@ -1,6 +1,8 @@
 //! The projector P of the floating bodies: G and Gᵀ Q G.
 
 pub mod balance;
+pub mod by_column;
+mod choice;
 pub mod distributed;
 pub mod gram;
 pub mod graph;
@@ -8,7 +10,9 @@ pub mod gtg;
 pub mod held;
 mod motions;
 pub mod natural;
+mod numbers;
 pub mod pattern;
+mod raised;
 pub mod refined;
 pub mod rows;
 pub mod spread;

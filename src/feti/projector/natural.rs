@@ -17,6 +17,7 @@ use super::distributed::Distributed;
 use super::gram::{Gram, Shape};
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
+use super::numbers::Numbers;
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
 use super::spread::Spread;
@@ -65,7 +66,9 @@ pub struct NaturalCoarse {
     /// The way of distributed vectors to the shared factor of GᵀQG.
     way: RefCell<Option<Rc<Spread>>>,
     /// The last choice of rows that was asked for, and their GᵀG.
-    last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
+    pub(super) last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
+    /// The numbers of the last GᵀG that was factored.
+    pub(super) numbers: RefCell<Numbers>,
     /// G on the owned rows.
     pub g: Rows,
     /// Q G where it differs from G.
@@ -122,6 +125,7 @@ impl NaturalCoarse {
             copies,
             way: RefCell::new(None),
             last: RefCell::new(None),
+            numbers: RefCell::default(),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
             gtg: None,
@@ -207,7 +211,7 @@ impl NaturalCoarse {
             chosen,
         )?;
         let spread = match gtg.is_shared() {
-            true => self.spread_for(session, shape, [g, qg])?,
+            true => self.spread_for(session, shape)?,
             false => None,
         };
         let gtg = self.gtg.insert(gtg);
@@ -215,20 +219,19 @@ impl NaturalCoarse {
         Ok(())
     }
 
-    /// The way to the factor of this shape for these rows: the one that is known if it suffices. Collective.
-    fn spread_for(
-        &self,
-        session: &Session,
-        shape: &Shape,
-        rows: [&Rows; 2],
-    ) -> Result<Option<Rc<Spread>>> {
+    /// The way to the factor of this shape for the rows of G and Q G: the one that is known if it suffices.
+    /// Collective.
+    fn spread_for(&self, session: &Session, shape: &Shape) -> Result<Option<Rc<Spread>>> {
         let Some(team) = shape.team().filter(|team| team.is_whole(session.comm())) else {
             return Ok(None);
         };
+        // With other Q the columns are always those of all candidate rows.
+        let wide = self.qg.as_ref();
+        let wide = wide.filter(|_| self.projector == ProjectorKind::Preconditioner);
         let mut known = self.way.borrow_mut();
-        let suffices = |s: &Rc<Spread>| s.fits(team) && s.covers(&rows);
+        let suffices = |s: &Rc<Spread>| s.fits(team) && wide.is_none_or(|qg| s.covers(qg));
         if any(session.comm(), !known.as_ref().is_some_and(suffices)) {
-            let all = [rows[0], rows[1], &self.all].into_iter();
+            let all = std::iter::once(&self.all).chain(wide);
             let columns = distinct(all.flat_map(|r| r.columns().iter().copied()));
             *known = Some(Spread::new(session, team, &columns)?.into());
         }
@@ -239,25 +242,6 @@ impl NaturalCoarse {
     pub(super) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
         self.graph
             .get_or_init(|| BodyGraph::new(problem, stiffness))
-    }
-
-    /// GᵀG of these rows, factored. Collective.
-    ///
-    /// # Panics
-    /// If no body floats.
-    pub fn gram(&self, comm: &SimpleCommunicator, chosen: &[bool]) -> Rc<Gram> {
-        let shape = self.shape.as_ref().expect("a body floats");
-        let mut last = self.last.borrow_mut();
-        let known = last.as_ref().is_some_and(|(rows, _)| rows == chosen);
-        if any(comm, !known) {
-            let all = &self.all;
-            let a = match shape.team().filter(|team| team.is_whole(comm)) {
-                Some(team) => shape.pattern.product_shared(team, all, all, |i| chosen[i]),
-                None => shape.pattern.product(comm, all, all, |i| chosen[i]),
-            };
-            *last = Some((chosen.to_vec(), Rc::new(Gram::new(shape, a))));
-        }
-        last.as_ref().expect("it was set").1.clone()
     }
 
     /// The body of each kernel vector.

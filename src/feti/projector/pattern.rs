@@ -4,13 +4,11 @@ use std::ops::Range;
 
 use faer::MatRef;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use super::rows::Rows;
-use crate::cholesky::team::{Place, Team};
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
+use crate::parallel::exchange::{gather_all, sum_all};
 
 /// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. The same on every
 /// rank.
@@ -173,63 +171,34 @@ impl Pattern {
         product
     }
 
-    /// AᵀB over the rows that `chosen` selects, where every rank gets the rows of the product that it has in the factor
-    /// of `team`. Rows of subtrees go to their owners; those of the top are summed over all ranks. Collective.
-    pub fn product_shared(
-        &self,
-        team: &Team,
-        a: &Rows,
-        b: &Rows,
-        chosen: impl Fn(usize) -> bool,
-    ) -> Csr {
-        let mut product = self.product_here(a, b, chosen);
-        let (size, rank) = (team.comm().size() as usize, team.comm().rank() as u32);
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
-        let mut top: Vec<f64> = Vec::new();
-        let row = |i: usize| self.row_ptr[i]..self.row_ptr[i + 1];
-        let mut of_top = Vec::new();
-        for i in 0..self.body.len() {
-            match team.place(i as u32) {
-                Place::Top(_) => {
-                    of_top.push(i);
-                    top.extend(&product.val[row(i)]);
-                }
-                Place::Subtree { rank: owner, .. } if owner != rank => {
-                    for k in row(i) {
-                        let value = std::mem::take(&mut product.val[k]);
-                        if value != 0.0 {
-                            outgoing[owner as usize].extend([k as u64, value.to_bits()]);
-                        }
-                    }
-                }
-                Place::Subtree { .. } => (),
-            }
-        }
-        for words in exchange_words(team.comm(), outgoing) {
-            for entry in words.chunks_exact(2) {
-                product.val[entry[0] as usize] += f64::from_bits(entry[1]);
-            }
-        }
-        sum_all(team.comm(), &mut top);
-        let mut rest = &top[..];
-        for i in of_top {
-            let (values, tail) = rest.split_at(row(i).len());
-            product.val[row(i)].copy_from_slice(values);
-            rest = tail;
-        }
-        product
-    }
-
     /// This rank's share of AᵀB over the rows that `chosen` selects.
     pub fn product_here(&self, a: &Rows, b: &Rows, chosen: impl Fn(usize) -> bool) -> Csr {
         let mut product = self.zeros();
-        let val = &mut product.val;
+        self.add_product(&mut product.val, (a, b), chosen, |_| true);
+        product
+    }
+
+    /// Adds AᵀB, over the rows that `chosen` selects, to the entries between bodies that are `on`.
+    pub fn add_product(
+        &self,
+        val: &mut [f64],
+        (a, b): (&Rows, &Rows),
+        chosen: impl Fn(usize) -> bool,
+        on: impl Fn(u32) -> bool,
+    ) {
         for i in (0..a.n()).filter(|&i| chosen(i)) {
             let ((left, x), (right, y)) = (a.entries(i), b.entries(i));
             for p in runs(&self.body, left) {
+                let row_of = self.body[left[p.start] as usize];
+                if !on(row_of) {
+                    continue;
+                }
                 for q in runs(&self.body, right) {
                     let of = self.body[right[q.start] as usize];
-                    let place = self.place(self.body[left[p.start] as usize], of);
+                    if !on(of) {
+                        continue;
+                    }
+                    let place = self.place(row_of, of);
                     let first = self.start[of as usize];
                     for k in p.clone() {
                         let row = self.row_ptr[left[k] as usize] + place;
@@ -240,7 +209,29 @@ impl Pattern {
                 }
             }
         }
-        product
+    }
+
+    /// The entries of a row.
+    pub fn row(&self, row: u32) -> Range<usize> {
+        self.row_ptr[row as usize]..self.row_ptr[row as usize + 1]
+    }
+
+    /// (row, its entries) for the blocks between these bodies.
+    pub fn blocks_between<'a>(
+        &'a self,
+        on: &'a [bool],
+    ) -> impl Iterator<Item = (u32, Range<usize>)> + 'a {
+        let bodies = (0..self.near.len()).filter(|&p| on[p]);
+        bodies.flat_map(move |p| {
+            let near = self.near[p].iter().filter(|n| on[n.0 as usize]);
+            near.flat_map(move |&(q, place)| {
+                let width = self.columns(q as usize).len();
+                self.columns(p).map(move |row| {
+                    let first = self.row_ptr[row] + place as usize;
+                    (row as u32, first..first + width)
+                })
+            })
+        })
     }
 }
 

@@ -10,7 +10,6 @@ use std::rc::Rc;
 use super::gram::Gram;
 use super::rows::Rows;
 use crate::cholesky::team::{Place, Team};
-use crate::linalg::sorted::distinct;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
@@ -65,11 +64,14 @@ impl Spread {
     }
 
     /// Whether it knows all columns of these rows.
-    pub fn covers(&self, rows: &[&Rows]) -> bool {
-        let top: Vec<u32> = self.top.iter().map(|t| t.0).collect();
-        let known = distinct(self.below.iter().chain(&top).copied());
-        let has = |c: &u32| known.binary_search(c).is_ok();
-        rows.iter().all(|rows| rows.columns().iter().all(has))
+    pub fn covers(&self, rows: &Rows) -> bool {
+        let mut known = vec![false; self.team.n()];
+        let of_top = self.top.iter().map(|t| &t.0);
+        self.below
+            .iter()
+            .chain(of_top)
+            .for_each(|&c| known[c as usize] = true);
+        rows.columns().iter().all(|&c| known[c as usize])
     }
 
     /// x ← x − along A⁺ fromᵀ x for the matrix A of this factor. Collective.

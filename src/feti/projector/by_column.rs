@@ -1,0 +1,43 @@
+//! Motions by the columns in which they have coefficients: what a row does to many of them.
+
+use super::gram::Motion;
+
+/// Motions by the columns in which they have coefficients.
+pub struct ByColumn {
+    start: Vec<usize>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl ByColumn {
+    /// Sorts the coefficients of motions with `r` columns.
+    pub fn new<'a>(r: usize, motions: impl Iterator<Item = &'a Motion>) -> ByColumn {
+        let mut all: Vec<(u32, u32, f64)> = Vec::new();
+        for (m, motion) in motions.enumerate() {
+            all.extend(motion.0.iter().map(|&(c, v)| (c, m as u32, v)));
+        }
+        all.sort_by_key(|e| (e.0, e.1));
+        let mut start = vec![0; r + 1];
+        all.iter().for_each(|e| start[e.0 as usize + 1] += 1);
+        for c in 0..r {
+            start[c + 1] += start[c];
+        }
+        ByColumn {
+            start,
+            entries: all.into_iter().map(|e| (e.1, e.2)).collect(),
+        }
+    }
+
+    /// The work of a row of G on each motion that it touches, by increasing number of the motion.
+    pub fn works(&self, columns: &[u32], values: &[f64]) -> Vec<(usize, f64)> {
+        let mut out: Vec<(usize, f64)> = Vec::new();
+        for (&c, g) in columns.iter().zip(values) {
+            for &(m, v) in &self.entries[self.start[c as usize]..self.start[c as usize + 1]] {
+                out.push((m as usize, g * v));
+            }
+        }
+        out.sort_by_key(|e| e.0);
+        out.chunk_by(|a, b| a.0 == b.0)
+            .map(|w| (w[0].0, w.iter().map(|e| e.1).sum()))
+            .collect()
+    }
+}

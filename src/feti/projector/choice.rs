@@ -1,0 +1,90 @@
+//! GᵀG for a choice of rows: the last one, the last one with a few rows more, or another factorisation.
+
+use std::rc::Rc;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::by_column::ByColumn;
+use super::gram::{Gram, Motion};
+use super::natural::NaturalCoarse;
+use super::raised::{Row, MOST};
+use crate::parallel::exchange::{gather_all, highest, sum_all};
+
+/// Motions on which the rows do more work than this, relative to the largest that they could do, are not known well
+/// enough: P would lose digits. As a rule it is some times rounding.
+const FREE: f64 = 1e-13;
+
+impl NaturalCoarse {
+    /// GᵀG of these rows, factored. Collective.
+    ///
+    /// # Panics
+    /// If no body floats.
+    pub fn gram(&self, comm: &SimpleCommunicator, chosen: &[bool]) -> Rc<Gram> {
+        let shape = self.shape.as_ref().expect("a body floats");
+        let mut last = self.last.borrow_mut();
+        // Rows that have left, and rows that have come, over all ranks.
+        let mut changes = match &*last {
+            Some((rows, _)) => {
+                let pairs = || rows.iter().zip(chosen);
+                let left = pairs().filter(|(was, is)| **was && !**is).count();
+                let more = pairs().filter(|(was, is)| !**was && **is).count();
+                [left as f64, more as f64]
+            }
+            None => [1.0, 0.0],
+        };
+        sum_all(comm, &mut changes);
+        if changes != [0.0; 2] {
+            let raised = match &*last {
+                Some((rows, gram)) if changes[0] == 0.0 && changes[1] <= MOST as f64 => gram
+                    .raised(&self.more_rows(comm, rows, chosen))
+                    .filter(|raised| self.work(comm, rows, raised.taken()) <= FREE),
+                _ => None,
+            };
+            let gram = raised.unwrap_or_else(|| {
+                let way = (&shape.pattern, shape.team().map(|t| &**t));
+                let mut numbers = self.numbers.borrow_mut();
+                let product = numbers.renewed(comm, way, &self.all, chosen);
+                Gram::new(shape, product)
+            });
+            *last = Some((chosen.to_vec(), Rc::new(gram)));
+        }
+        last.as_ref().expect("it was set").1.clone()
+    }
+
+    /// The largest work of these rows on one of these motions, relative to the largest that it could be. Collective.
+    fn work(&self, comm: &SimpleCommunicator, chosen: &[bool], motions: &[Motion]) -> f64 {
+        let largest: Vec<f64> = motions.iter().map(Motion::largest).collect();
+        let by_column = ByColumn::new(self.r, motions.iter());
+        let mut most = 0.0f64;
+        for i in (0..chosen.len()).filter(|&i| chosen[i]) {
+            let (columns, values) = self.all.entries(i);
+            let size: f64 = values.iter().map(|v| v.abs()).sum();
+            for (m, work) in by_column.works(columns, values) {
+                most = most.max(work.abs() / (size * largest[m]));
+            }
+        }
+        highest(comm, most)
+    }
+
+    /// The rows that are chosen now and were not, on every rank. Collective.
+    fn more_rows(&self, comm: &SimpleCommunicator, was: &[bool], is: &[bool]) -> Vec<Row> {
+        // [number of entries, columns, values] of each.
+        let mut words: Vec<u64> = Vec::new();
+        for i in (0..is.len()).filter(|&i| is[i] && !was[i]) {
+            let (columns, values) = self.all.entries(i);
+            words.push(columns.len() as u64);
+            words.extend(columns.iter().map(|&c| u64::from(c)));
+            words.extend(values.iter().map(|v| v.to_bits()));
+        }
+        let all = gather_all(comm, &words).concat();
+        let (mut rest, mut out) = (&all[..], Vec::new());
+        while let [n, tail @ ..] = rest {
+            let (columns, tail) = tail.split_at(*n as usize);
+            let (values, tail) = tail.split_at(*n as usize);
+            let columns = columns.iter().map(|&c| c as u32).collect();
+            out.push((columns, values.iter().map(|&w| f64::from_bits(w)).collect()));
+            rest = tail;
+        }
+        out
+    }
+}

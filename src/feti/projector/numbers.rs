@@ -1,0 +1,157 @@
+//! GᵀG for a choice of rows, renewed by what changed when rows switch.
+//!
+//! Only the blocks between bodies that switched rows touch are computed again, each from all its rows in their order:
+//! the same bits as those of a product that is computed at once, without the cancellation of sums that are added to and
+//! subtracted from. Ranks send the entries that changed to the owners of the rows.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::pattern::Pattern;
+use super::rows::Rows;
+use crate::cholesky::team::{Place, Team};
+use crate::linalg::csr::Csr;
+use crate::parallel::exchange::{exchange_words, sum_all};
+
+/// An entry that another rank has sent.
+#[derive(Debug, Clone, Copy)]
+struct Sent {
+    entry: usize,
+    rank: usize,
+    value: f64,
+}
+
+/// GᵀG for the rows that hold.
+#[derive(Debug, Default)]
+pub struct Numbers {
+    /// Whether each row is in it.
+    chosen: Vec<bool>,
+    /// This rank's share, entry by entry of the pattern.
+    share: Vec<f64>,
+    /// Where ranks share the factor: the sums, in the rows that this rank has.
+    sum: Vec<f64>,
+    /// What others have sent, by entry and rank.
+    sent: Vec<Sent>,
+}
+
+impl Numbers {
+    /// GᵀG over the chosen rows, which has this pattern. With a team that all ranks share, a rank gets the rows that it
+    /// has in the factor, else it gets all. Collective.
+    pub fn renewed(
+        &mut self,
+        comm: &SimpleCommunicator,
+        (pattern, team): (&Pattern, Option<&Team>),
+        rows: &Rows,
+        chosen: &[bool],
+    ) -> Csr {
+        let mut out = pattern.zeros();
+        if self.share.is_empty() {
+            self.chosen = vec![false; rows.n()];
+            self.share = vec![0.0; out.val.len()];
+        }
+        let mut touched = vec![false; pattern.n_bodies()];
+        for i in (0..rows.n()).filter(|&i| chosen[i] != self.chosen[i]) {
+            let columns = rows.entries(i).0.iter();
+            columns.for_each(|&c| touched[pattern.bodies()[c as usize] as usize] = true);
+        }
+        self.chosen.copy_from_slice(chosen);
+        let team = team.filter(|team| team.is_whole(comm));
+        let before = team.map(|team| self.of_others(pattern, team, &touched));
+        for span in pattern.blocks_between(&touched).map(|b| b.1) {
+            self.share[span].fill(0.0);
+        }
+        let on = |body: u32| touched[body as usize];
+        pattern.add_product(&mut self.share, (rows, rows), |i| chosen[i], on);
+        match (team, before) {
+            (Some(team), Some(before)) => {
+                self.exchange(team, &before);
+                self.sum_of_own(pattern, team, &touched);
+                self.sum_of_top(pattern, team);
+                out.val.copy_from_slice(&self.sum);
+            }
+            _ => {
+                out.val.copy_from_slice(&self.share);
+                sum_all(comm, &mut out.val);
+            }
+        }
+        out
+    }
+
+    /// The owner and the present value of each entry between these bodies in a row of another rank's subtrees.
+    fn of_others(
+        &self,
+        pattern: &Pattern,
+        team: &Team,
+        touched: &[bool],
+    ) -> Vec<(usize, usize, f64)> {
+        let mut out = Vec::new();
+        for (row, span) in pattern.blocks_between(touched) {
+            match team.place(row) {
+                Place::Subtree { rank, .. } if rank != team.comm().rank() as u32 => {
+                    out.extend(span.map(|k| (rank as usize, k, self.share[k])));
+                }
+                _ => (),
+            }
+        }
+        out
+    }
+
+    /// Sends the entries that differ from what they were, and notes what others send.
+    fn exchange(&mut self, team: &Team, before: &[(usize, usize, f64)]) {
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); team.comm().size() as usize];
+        for &(owner, k, old) in before {
+            if self.share[k] != old {
+                outgoing[owner].extend([k as u64, self.share[k].to_bits()]);
+            }
+        }
+        let known = self.sent.len();
+        for (rank, words) in exchange_words(team.comm(), outgoing).iter().enumerate() {
+            for pair in words.chunks_exact(2) {
+                let (entry, value) = (pair[0] as usize, f64::from_bits(pair[1]));
+                let place = |s: &Sent| (s.entry, s.rank);
+                match self.sent[..known].binary_search_by_key(&(entry, rank), place) {
+                    Ok(at) => self.sent[at].value = value,
+                    Err(_) => self.sent.push(Sent { entry, rank, value }),
+                }
+            }
+        }
+        if self.sent.len() > known {
+            self.sent.sort_unstable_by_key(|s| (s.entry, s.rank));
+        }
+    }
+
+    /// Sums the shares of the rows of this rank's subtrees.
+    fn sum_of_own(&mut self, pattern: &Pattern, team: &Team, touched: &[bool]) {
+        self.sum.resize(self.share.len(), 0.0);
+        let here = team.comm().rank() as u32;
+        for (row, span) in pattern.blocks_between(touched) {
+            match team.place(row) {
+                Place::Subtree { rank, .. } if rank == here => {
+                    self.sum[span.clone()].copy_from_slice(&self.share[span]);
+                }
+                _ => (),
+            }
+        }
+        // The sums begin anew where others have a share.
+        for s in &self.sent {
+            self.sum[s.entry] = self.share[s.entry];
+        }
+        for s in &self.sent {
+            self.sum[s.entry] += s.value;
+        }
+    }
+
+    /// Sums the rows of the top, which every rank has.
+    fn sum_of_top(&mut self, pattern: &Pattern, team: &Team) {
+        let rows = || team.top_dofs().map(|row| pattern.row(row));
+        let mut top: Vec<f64> = Vec::new();
+        rows().for_each(|span| top.extend(&self.share[span]));
+        sum_all(team.comm(), &mut top);
+        let mut rest = &top[..];
+        for span in rows() {
+            let (values, tail) = rest.split_at(span.len());
+            self.sum[span].copy_from_slice(values);
+            rest = tail;
+        }
+    }
+}
