@@ -101,6 +101,17 @@ pub enum Command {
 }
 
 impl Command {
+    /// Whether nothing is drawn of what goes on.
+    pub fn quiet(&self) -> bool {
+        match self {
+            Command::Solve(args) => args.results.quiet,
+            Command::Table1(args) => args.results.quiet,
+            Command::Study(args) => args.results.quiet,
+            Command::Plan(_) => false,
+            _ => true,
+        }
+    }
+
     /// Whether standard output gets a report as JSON.
     pub fn json_on_stdout(&self) -> bool {
         let json = match self {

@@ -20,6 +20,7 @@ mod plan_record;
 mod plan_tables;
 mod record;
 mod renewed;
+mod searches;
 mod solve;
 mod study;
 mod table1;
@@ -80,6 +81,7 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     if command.json_on_stdout() {
         petsc::print_on_stderr(session);
     }
+    searches::show(session, command.quiet());
     let done = carry_out(session, command.clone(), petsc.clone());
     if let (Ok(()) | Err(Error::NotConverged(_)), 0) = (&done, session.rank()) {
         if let Some(warning) = unused::warning(session, &command, &petsc)? {

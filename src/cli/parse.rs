@@ -1,5 +1,7 @@
 //! Reads the command line: options with one dash are PETSc's, clap takes the rest.
 
+use std::os::unix::fs::FileTypeExt;
+
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
@@ -30,6 +32,7 @@ pub struct Invocation {
 /// [`Error::Input`], one sentence.
 pub fn parse(args: Vec<String>) -> Result<Invocation> {
     let (ours, petsc) = split(args);
+    check_options_files(&petsc)?;
     let words = std::iter::once("fetifeti".to_string()).chain(ours);
     let wanted = match Line::try_parse_from(words) {
         Ok(Line { command, .. }) => command.map_or_else(|| Wanted::Say(usage()), Wanted::Run),
@@ -59,6 +62,32 @@ fn split(args: Vec<String>) -> (Vec<String>, Vec<String>) {
         petsc.extend(args.next_if(|next| !is_option(next)));
     }
     (ours, petsc)
+}
+
+/// Bytes of the longest file of options.
+const MOST: u64 = 1 << 24;
+
+/// Refuses what is no file of options: PETSc would read it to the end, and a device may have none.
+fn check_options_files(petsc: &[String]) -> Result<()> {
+    let named = petsc.windows(2).filter(|w| w[0] == "-options_file");
+    for file in named.map(|w| &w[1]) {
+        // What is not there is PETSc's to say.
+        let Ok(data) = std::fs::metadata(file) else {
+            continue;
+        };
+        let kind = data.file_type();
+        let endless = kind.is_char_device() && file != "/dev/null" || kind.is_block_device();
+        if endless || data.len() > MOST {
+            return Err(Error::input(format!(
+                "-options_file is {file}, {}, where a file with options was expected",
+                match endless {
+                    true => "a device".into(),
+                    false => format!("which has {} bytes", data.len()),
+                }
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// clap's message of several lines as one sentence.

@@ -29,6 +29,11 @@ pub fn run(session: &Session, args: Plan) -> Result<()> {
         ..Destination::default()
     };
     let scene = distribution::load(session, &args.scene)?;
+    session.agree(fits::solved(
+        session,
+        &scene,
+        &args.scene.display().to_string(),
+    ))?;
     on_first_rank(session, || destination.prepare())?;
     let substructures = distribution::substructures(session, &scene)?;
     let settings = MethodSettings::default().with_options(session)?;
@@ -42,7 +47,7 @@ pub fn run(session: &Session, args: Plan) -> Result<()> {
     ))?;
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
-    let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene)?);
+    let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene));
     let deflation = deflation(session, substructures, settings, &coefficient)?;
     let _ = writeln!(out, "{:<22}{deflation}", "adaptive");
     let record = report(session, &scene, &sizes)?;
@@ -52,25 +57,14 @@ pub fn run(session: &Session, args: Plan) -> Result<()> {
     })
 }
 
-/// A sentence on the memory that a solve takes, and whether it is there.
-fn of_a_solve(session: &Session, scene: &Scene) -> Result<String> {
-    let needed = fits::needed(session, scene);
+/// A sentence on the memory that a solve takes.
+fn of_a_solve(session: &Session, scene: &Scene) -> String {
     let each = match session.size() {
         1 => "",
         _ => " on each rank",
     };
-    let mut out = format!("about {} for a solve{each}", fits::size(needed));
-    if let Some(left) = session.agree(fits::left(session, None))? {
-        if needed > left.bytes {
-            let _ = write!(
-                out,
-                ", more than the {} {} that are left",
-                fits::size(left.bytes),
-                left.by
-            );
-        }
-    }
-    Ok(out)
+    let needed = fits::size(fits::needed(session, scene));
+    format!("about {needed} for a solve{each}")
 }
 
 /// The effect of `-fetifeti_adaptive`. Where the solver is sure to search, the search is carried out here, and the

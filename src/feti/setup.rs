@@ -23,6 +23,7 @@ use super::operators::preconditioner::Preconditioner;
 use super::operators::stiffness::Stiffness;
 use super::primal::coarse::PrimalProblem;
 use super::primal::refinement::{self, Refinement};
+use super::primal::slack;
 use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
 use super::settings::{MethodSettings, PcType, Scaling};
@@ -196,6 +197,7 @@ fn stiffness(
 ) -> Result<Stiffness> {
     let comm = session.comm();
     let mut space = PrimalSpace::new(comm, problem, sharing, &jump.averages, &locals);
+    slack::check(session, problem, &space, &locals)?;
     let primal = clock::timed(Phase::PrimalSetup, || {
         let prefix = format!("{}coarse_", settings.prefix);
         let known = kept.map_or(&[][..], Kept::coarse);

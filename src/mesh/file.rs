@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use crate::error::{Error, Result};
+use std::io::Read;
 use std::path::Path;
 
 /// The bytes of the file `path`, which has a `what`. A device or a pipe may have no end, and is refused.
@@ -18,6 +19,37 @@ pub(crate) fn bytes(path: &Path, what: &str) -> Result<Vec<u8>> {
     }
     std::fs::read(path).map_err(fail)
 }
+
+/// Bytes of the longest text: many times what the largest scenes have.
+const MOST: u64 = 1 << 28;
+
+/// The text of `path`, which has a `what`; it may be a pipe.
+///
+/// # Errors
+/// [`Error::Input`] with the path; a text that is too long may have no end.
+pub(crate) fn text(path: &Path, what: &str) -> Result<String> {
+    let name = path.display();
+    let fail = |e: std::io::Error| Error::Input(format!("{name}: the {what} cannot be read: {e}"));
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(fail)?;
+    file.take(MOST + 1).read_to_end(&mut bytes).map_err(fail)?;
+    if bytes.len() as u64 > MOST {
+        return Err(Error::Input(format!(
+            "{name}: the {what} has more than {} MB, or no end, where a {what} of less was expected",
+            MOST >> 20
+        )));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        Error::Input(format!(
+            "{name}: the {what} cannot be read: byte {} is no text in UTF-8",
+            at + 1
+        ))
+    })
+}
+
+/// Largest coordinate: volumes and their products must be numbers.
+pub(crate) const FARTHEST: f64 = 1e50;
 
 /// What a reader of mesh files returns, whatever the format.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -26,7 +26,7 @@ pub use cells::Cells;
 pub use congruent::{congruent, Outline};
 pub use defects::{defects, Defect};
 pub use extract::Extractor;
-pub(crate) use file::bytes;
+pub(crate) use file::{bytes, text, FARTHEST};
 pub use file::{Group, Members, MeshFile};
 pub use kind::{CellKind, CellSide};
 pub use parts::Parts;

@@ -1,11 +1,14 @@
 //! Eigenvalue solvers (SLEPc).
 
-use super::error::{c_string, got, rust_string};
+use super::error::{c_string, got, guard, rust_string};
 use super::handle::Handle;
+use super::search::Search;
 use super::{Comm, ConvergedReason, Ksp, Mat, Session, Vec};
 use crate::Result;
 use petsc_sys as sys;
 use petsc_sys::Flag;
+use std::ffi::{c_int, c_void};
+use std::time::Instant;
 
 /// The kind of eigenvalue problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -153,11 +156,20 @@ impl Eps {
         petsc!(EPSSolve(self.raw()))
     }
 
-    /// Solves for one eigenvalue, and ends also where it has settled. `None` where neither happens. Collective.
+    /// Solves for one eigenvalue, at the end `which`, and ends also where it has settled. `None` where neither happens.
+    /// Who listens to the session is told at every restart. Collective.
     ///
     /// # Errors
     /// As [`Eps::solve`].
-    pub fn solve_settled(&self, when: Settled) -> Result<Option<End>> {
+    pub fn solve_settled(&self, when: Settled, which: Which) -> Result<Option<End>> {
+        let (mut tolerance, mut most) = (0.0, 0);
+        petsc!(EPSGetTolerances(self.raw(), &mut tolerance, &mut most))?;
+        let told = Told {
+            session: self.session(),
+            largest: which == Which::LargestReal,
+            tolerance,
+            start: Instant::now(),
+        };
         let (mut value, mut residual) = (f64::NAN, f64::NAN);
         let found = got(|found| {
             petsc!(ff_eps_solve_settled(
@@ -166,11 +178,14 @@ impl Eps {
                 when.first as i32,
                 when.patience as i32,
                 when.loose,
+                Some(restarted as _),
+                &told as *const Told as *mut c_void,
                 &mut value,
                 &mut residual,
                 found
             ))
         })?;
+        self.session().tell(None);
         let settled = (found == 2).then_some(residual);
         Ok((found != 0).then_some(End { value, settled }))
     }
@@ -222,4 +237,28 @@ impl Eps {
         petsc!(EPSGetST(self.raw(), &mut st))?;
         Ksp::borrowed(self.session(), |ksp| petsc!(STGetKSP(st, ksp)))
     }
+}
+
+/// A search that tells of its course.
+struct Told<'a> {
+    session: &'a Session,
+    largest: bool,
+    tolerance: f64,
+    start: Instant,
+}
+
+/// Called at every restart.
+unsafe extern "C" fn restarted(who: *mut c_void, restarts: c_int, residual: f64) -> c_int {
+    guard("what is told of a search", || {
+        // SAFETY: `solve_settled` passes the address of its own value, which lives until the solve returns.
+        let told = unsafe { &*(who as *const Told) };
+        told.session.tell(Some(&Search {
+            largest: told.largest,
+            restarts: restarts.max(0) as usize,
+            residual,
+            tolerance: told.tolerance,
+            elapsed: told.start.elapsed(),
+        }));
+        Ok(())
+    })
 }

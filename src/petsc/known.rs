@@ -25,6 +25,13 @@ pub(crate) fn known(
     Ok(names(&done?))
 }
 
+impl Session {
+    /// The options that our own code has asked for so far, with their dash.
+    pub(crate) fn asked(&self) -> BTreeSet<String> {
+        self.0.asked.borrow().clone()
+    }
+}
+
 /// The text that is listed.
 fn listed(set: &[(String, String)], work: impl FnOnce() -> Result<()>) -> Result<String> {
     petsc!(PetscOptionsSetValue(

@@ -27,6 +27,7 @@ pub(crate) mod ordering;
 mod partition;
 mod pc;
 mod scatter;
+mod search;
 mod session;
 mod shell;
 pub(crate) mod signals;
@@ -51,6 +52,7 @@ pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
 pub use scatter::Scatter;
+pub use search::{Listener, Search};
 #[cfg(feature = "cli")]
 pub(crate) use session::version;
 pub use session::{max_memory, print_on_stderr, Comm, Session};

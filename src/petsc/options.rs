@@ -70,7 +70,7 @@ impl Options {
     /// The text of an option; empty where it was given without a value.
     pub fn get_string(&self, name: &str) -> Result<Option<String>> {
         let full = self.full_name(name);
-        self.session.note_asked(&full);
+        self.note_asked(&full);
         let full = c_string(&full);
         let mut buffer = vec![0 as c_char; 1 << 14];
         let mut set = Flag::of(false);
@@ -331,6 +331,14 @@ impl Options {
         match text.trim().parse() {
             Ok(value) => Ok(Some(value)),
             Err(_) => Err(self.wrong(name, &text, expected)),
+        }
+    }
+
+    /// Notes that our own code has asked for an option.
+    fn note_asked(&self, name: &str) {
+        let mut asked = self.session.0.asked.borrow_mut();
+        if !asked.contains(name) {
+            asked.insert(name.to_string());
         }
     }
 

@@ -1,6 +1,7 @@
 //! An initialised PETSc: starting it, ending it, and failing on several ranks without a hang.
 
 use super::error::{c_string, collect_traces, panicked, settled};
+use super::search::{Listener, Search};
 use super::together;
 use crate::{Error, Result};
 use mpi::raw::FromRaw;
@@ -30,9 +31,9 @@ pub enum Comm {
 /// An initialised PETSc. Cheap to clone; the last clone (every PETSc object holds one) finalises PETSc if this
 /// session initialised it.
 #[derive(Clone)]
-pub struct Session(Rc<Inner>);
+pub struct Session(pub(super) Rc<Inner>);
 
-struct Inner {
+pub(super) struct Inner {
     /// The communicator of [`Comm::World`] as PETSc gets it.
     world: sys::MPI_Comm,
     /// PETSc's inner communicator of `world`, held so that destroying the last object frees no communicator.
@@ -53,6 +54,8 @@ struct Inner {
     pub(super) listed: RefCell<HashSet<String>>,
     /// Options that our own code has asked for, with their dash.
     pub(super) asked: RefCell<BTreeSet<String>>,
+    /// Who is told of long searches.
+    listener: RefCell<Option<Listener>>,
 }
 
 impl Session {
@@ -156,6 +159,7 @@ impl Session {
             began_slepc: Cell::new(false),
             listed: RefCell::default(),
             asked: RefCell::default(),
+            listener: RefCell::default(),
         })))
     }
 
@@ -188,18 +192,15 @@ impl Session {
         self.0.listed.borrow_mut().insert(key.to_string())
     }
 
-    /// Notes that our own code has asked for an option.
-    pub(crate) fn note_asked(&self, name: &str) {
-        let mut asked = self.0.asked.borrow_mut();
-        if !asked.contains(name) {
-            asked.insert(name.to_string());
-        }
+    /// From now on `listener` is told of searches for eigenvalues, on this rank.
+    pub fn listen(&self, listener: Listener) {
+        *self.0.listener.borrow_mut() = Some(listener);
     }
 
-    /// The options that our own code has asked for so far, with their dash.
-    #[cfg(feature = "cli")]
-    pub(crate) fn asked(&self) -> BTreeSet<String> {
-        self.0.asked.borrow().clone()
+    pub(super) fn tell(&self, search: Option<&Search>) {
+        if let Some(listener) = &*self.0.listener.borrow() {
+            listener(search);
+        }
     }
 
     /// Initialises SLEPc if nobody has.

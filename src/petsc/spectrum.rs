@@ -196,7 +196,7 @@ pub fn extreme_eigenvalues(
             patience: PATIENCE,
             loose: LOOSE,
         };
-        match eps.solve_settled(when)? {
+        match eps.solve_settled(when, which)? {
             Some(end) => Ok(end),
             None => Err(Error::NotConverged(format!(
                 "The {} eigenvalue did not converge to {tol:.0e} in {} restarts ({}); \

@@ -17,8 +17,9 @@ use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Obstacle, Standing};
 use super::rows::points::Point;
 use super::{axis, cut, read, rows, validate};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fem::Form;
+use crate::mesh::text;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -90,7 +91,7 @@ impl Scene {
     /// Reads and checks the scene in the file `path`; of a deck (`.inp`) the last step.
     ///
     /// # Errors
-    /// [`Error::Input`] with file, line and what was expected.
+    /// [`Error::Input`](crate::Error::Input) with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
         Scene::load_if(path.as_ref(), |_| Ok(()))
     }
@@ -106,8 +107,7 @@ impl Scene {
             let deck = DeckScenes::load(path)?;
             return deck.scene(&read::stem(&file), deck.n_steps() - 1);
         }
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| Error::Input(format!("{file}: the scene cannot be read: {e}")))?;
+        let text = text(path, "scene")?;
         let spec = read::read(&file, &text)?;
         fits(&spec)?;
         Scene::new(spec)
@@ -124,7 +124,8 @@ impl Scene {
     /// Checks a scene that a program has built.
     ///
     /// # Errors
-    /// [`Error::Input`] for overlapping bodies, non-matching nodes on tied faces, values out of range, ….
+    /// [`Error::Input`](crate::Error::Input) for overlapping bodies, non-matching nodes on tied faces, values out of
+    /// range, ….
     pub fn new(mut spec: SceneSpec) -> Result<Scene> {
         validate::check(&spec)?;
         let mut steps = Steps::new(&spec)?;
@@ -215,7 +216,8 @@ impl Scene {
     /// The experiment of Table 1 of \[Lee\]; see [`lee`].
     ///
     /// # Errors
-    /// [`Error::Input`] when a count is zero, or when no node lies in the middle third of any face.
+    /// [`Error::Input`](crate::Error::Input) when a count is zero, or when no node lies in the middle third of any
+    /// face.
     pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> Result<Scene> {
         Scene::new(lee(bodies, subdomains, elements, faces))
     }

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::checked::Scene;
-use super::model::spec::{self, Faces, SceneSpec};
+use super::geometry::interface::Link;
+use super::model::spec::{self, ByDefault, Faces, SceneSpec};
 use super::need::Need;
 use super::read::MOST_IN_A_ROW;
 use super::validate::MOST_BODIES;
@@ -117,11 +118,15 @@ fn ranks_here(session: &Session) -> usize {
 }
 
 fn of_scene(scene: &Scene) -> Need {
-    Need::of(scene.bodies.iter().map(|b| &b.spec), &scene.form)
+    let nodes = || scene.interfaces.iter().flat_map(|i| &i.shared);
+    let tied = nodes().filter(|n| n.link == Link::Tied).count();
+    let tied = tied > nodes().filter(|n| n.link.is_contact()).count();
+    Need::of(scene.bodies.iter().map(|b| &b.spec), &scene.form, tied)
 }
 
 fn of_spec(spec: &SceneSpec) -> Need {
-    Need::of(spec.bodies.iter(), &spec.form)
+    let tied = spec.default == ByDefault::Tied && spec.contacts.is_empty();
+    Need::of(spec.bodies.iter(), &spec.form, tied)
 }
 
 fn check(

@@ -1,7 +1,7 @@
 //! The memory that a scene will take, from counts of elements and subdomains alone: nothing is made for it.
 //!
-//! The coefficients are fitted to measurements (docs/options.md, "Memory"): they are right within a factor of two, not
-//! bounds.
+//! The coefficients are fitted to measurements (docs/options.md, "Memory"): what they give is 0.9 to 2 times what was
+//! measured, and no bound.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use crate::mesh::partition::subdomains_for;
 use crate::mesh::Mesh;
 
 /// The program with its libraries.
-const PROGRAM: f64 = 5e7;
+const PROGRAM: f64 = 5.8e7;
 /// A subdomain, whatever its size: its lists and tables; with a solver around it.
 const SUBDOMAIN: [f64; 2] = [1.5e3, 3.5e3];
 /// A node of a subdomain: its numbers and coordinates; and what each of its components takes.
@@ -21,10 +21,16 @@ const NODE: [f64; 2] = [80.0, 30.0];
 const ENTRY: f64 = 14.0;
 /// A node on the boundary of a body among others: every rank knows all of them.
 const BOUNDARY: f64 = 850.0;
+/// A node on the boundary of a body among others: its rows, and what they take in the projector. Ties have a row for
+/// each component, and what they take grows with the square of that number.
+const ROW: f64 = 950.0;
+/// Rigid motions of a body among others, times their number to the power 1.5: columns of G, and their part of the
+/// factor of GᵀQG.
+const MOTION: f64 = 3.6e3;
 /// A node of a mesh of cells, on every rank.
 const CELL_NODE: f64 = 400.0;
 /// Entries of a factor per unknown and component: times log₂ of the nodes in the plane, times their cube root in space.
-const FACTOR: [f64; 2] = [4.0, 14.0];
+const FACTOR: [f64; 2] = [4.0, 15.0];
 
 /// Bytes that a scene will take.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,8 +61,12 @@ struct Counts {
 }
 
 impl Need {
-    /// What these bodies will take.
-    pub fn of<'a>(bodies: impl ExactSizeIterator<Item = &'a BodySpec>, form: &Form) -> Need {
+    /// What these bodies will take; `tied`: most of them are tied, and not in contact.
+    pub fn of<'a>(
+        bodies: impl ExactSizeIterator<Item = &'a BodySpec>,
+        form: &Form,
+        tied: bool,
+    ) -> Need {
         let alone = bodies.len() < 2;
         let mut need = Need {
             whole: PROGRAM,
@@ -75,6 +85,11 @@ impl Need {
             } else if !alone {
                 need.whole += BOUNDARY * n.boundary;
             }
+            if !alone {
+                let motions = form.rigid(dim).len() as f64;
+                let rows = if tied { c * c } else { 1.0 };
+                need.parts[1] += ROW * rows * n.surface(dim) + MOTION * motions.powf(1.5);
+            }
             let transient = if n.cells { 2.0 } else { 1.0 };
             let node = NODE[0] + NODE[1] * c + transient * ENTRY * n.row * c * c;
             need.parts[0] += n.subdomains * (SUBDOMAIN[0] + n.each * node);
@@ -86,10 +101,13 @@ impl Need {
             // The rows of higher order have more entries, and so have their factors.
             let order = (n.row / if dim == 2 { 9.0 } else { 27.0 }).max(1.0);
             let factor = 8.0 * c * c * n.each * fill * order;
-            match key(body).filter(|_| !n.cells) {
+            match key(body) {
                 None => need.factors.push([factor, n.subdomains, n.subdomains]),
                 Some(key) => {
-                    let kinds = n.subdomains.min(3_f64.powi(dim as i32));
+                    let kinds = match body.mesh {
+                        Mesh::Grid(_) => n.subdomains.min(3_f64.powi(dim as i32)),
+                        Mesh::Cells(_) => n.subdomains,
+                    };
                     let at = *alike.entry(key).or_insert(need.factors.len());
                     match need.factors.get_mut(at) {
                         Some(group) => {
@@ -121,6 +139,15 @@ impl Need {
 }
 
 impl Counts {
+    /// Nodes on the boundary of the body; of a mesh of cells, those of a cube with as many nodes.
+    fn surface(&self, dim: usize) -> f64 {
+        if !self.cells {
+            return self.boundary;
+        }
+        let d = dim as f64;
+        (2.0 * d * self.nodes.powf((d - 1.0) / d)).min(self.nodes)
+    }
+
     fn of(body: &BodySpec, components: usize) -> Counts {
         match &body.mesh {
             Mesh::Grid(grid) => {
@@ -186,17 +213,25 @@ impl Counts {
     }
 }
 
-/// What is the same in boxes whose subdomains have the same matrices, up to factors; `None` where they all differ.
+/// What is the same in boxes whose subdomains have the same matrices, up to factors, and in copies of one mesh; `None`
+/// where they all differ.
 fn key(body: &BodySpec) -> Option<[u64; 7]> {
     let steady = |field: &Field| match field {
         Field::Expression(e) => !e.varies_in_space(),
         Field::Checkerboard { .. } | Field::Table { .. } => true,
         _ => false,
     };
-    let grid = body.mesh.grid()?;
     if body.map.is_some() || !steady(&body.rho) || !steady(&body.poisson) {
         return None;
     }
+    let grid = match &body.mesh {
+        Mesh::Grid(grid) => grid,
+        Mesh::Cells(mesh) => {
+            let [x, y, z] = mesh.points.first()?.map(f64::to_bits);
+            let [cells, points] = [mesh.cells.len(), mesh.points.len()].map(|n| n as u64);
+            return Some([cells, points, x, y, z, 0, 0]);
+        }
+    };
     let (block, step) = (grid.block_elements(), grid.step());
     let [a, b, c] = block.map(|n| n as u64);
     // Sizes in seven digits: copies at other places differ in rounding.

@@ -4,6 +4,7 @@ use super::model::body::BodySpec;
 use super::model::field::Field;
 use crate::error::Result;
 use crate::fem::Form;
+use crate::mesh::FARTHEST;
 
 /// A quantity that a body has by points: its name in messages, and the values that it may have.
 pub(super) struct Quantity {
@@ -16,8 +17,30 @@ pub(super) struct Quantity {
 /// and products of what follows from them must be numbers.
 pub(super) const LARGEST: f64 = 1e100;
 
-/// Largest edge and coordinate, and the inverse of the smallest edge: a volume is the third power.
-pub(super) const LONGEST: f64 = 1e50;
+/// Largest edge, coordinate, gap and bound, and the inverse of the smallest edge: a volume is the third power.
+pub(super) const LONGEST: f64 = FARTHEST;
+
+/// What was expected instead of this gap or bound; `None` if it may be.
+pub(super) fn unfit_length(value: f64) -> Option<String> {
+    match value {
+        v if !v.is_finite() => Some("a finite number was expected".into()),
+        v if v.abs() > LONGEST => Some(format!(
+            "at most {LONGEST:e} was expected (take other units)"
+        )),
+        _ => None,
+    }
+}
+
+/// The largest coordinate of a mesh, and what was expected, if areas and volumes would be no numbers.
+pub(super) fn unfit_size(points: &[[f64; 3]]) -> Option<(f64, String)> {
+    let all = points.iter().flatten().map(|x| x.abs());
+    let size = all.fold(0.0, f64::max);
+    match size {
+        s if s > LONGEST => Some((size, format!("at most {LONGEST:e}"))),
+        s if s < 1.0 / LONGEST => Some((size, format!("at least {:e}", 1.0 / LONGEST))),
+        _ => None,
+    }
+}
 
 /// The coefficient of a scalar problem.
 const RHO: Quantity = Quantity {

@@ -105,3 +105,70 @@ fn numbers_beyond_all_units_are_named() {
         );
     }
 }
+
+/// Gaps, and lengths of meshes by their scale.
+#[test]
+fn gaps_and_meshes_beyond_all_units_are_named() {
+    let scratch = Scratch::new("lengths");
+    let refused = |text: String, part: &str| {
+        let scene = scratch.file("lengths.toml", &text);
+        let out = fetifeti(&["solve", &scene]);
+        assert_eq!((out.code, out.stdout.as_str()), (2, ""), "{}", out.all());
+        assert_eq!(out.stderr.lines().count(), 1, "{}", out.all());
+        for part in ["lengths.toml:", part] {
+            assert!(out.stderr.contains(part), "{part}: {}", out.all());
+        }
+    };
+    let scene = std::fs::read_to_string("examples/scenes/contact_gap_table.toml");
+    let scene = scene.expect("the scene");
+    let table = scene.lines().find(|l| l.starts_with("gap = "));
+    let table = table.expect("a gap");
+    for (gap, part) in [
+        (
+            "1e308",
+            "is 1e308 at (0, 1) where at most 1e50 was expected",
+        ),
+        ("nan", "nan where a finite number was expected"),
+        ("\"1/0\"", "is inf at (0, 1) where a finite number"),
+        ("[[0, 1e308], [1, 0]]", "is 1e308 at (0, 1)"),
+    ] {
+        refused(scene.replace(table, &format!("gap = {gap}")), part);
+    }
+    let mesh = "[mesh]\nfile = \"FILE\"\nscale = SCALE\n[[body]]\nname = \"quads\"\ndirichlet = [\"all\"]\n";
+    let file = std::fs::canonicalize("tests/fixtures/meshes/plate.gmsh22.msh").expect("a mesh");
+    let mesh = mesh.replace("FILE", &file.display().to_string());
+    for scale in ["1e300", "1e-300"] {
+        refused(mesh.replace("SCALE", scale), "(take another `scale`)");
+    }
+}
+
+/// Devices that have no end; a pipe has one.
+#[test]
+fn what_has_no_end_is_refused() {
+    let zero = "/dev/zero";
+    let contact = "examples/scenes/model_contact.toml";
+    for (args, part) in [
+        (&["solve", zero][..], "has more than 256 MB, or no end"),
+        (&["plan", zero], "has more than 256 MB, or no end"),
+        (&["solve", contact, "--resume", zero], "is no checkpoint"),
+        (
+            &["solve", contact, "-options_file", zero],
+            "a device, where",
+        ),
+    ] {
+        let out = fetifeti(args);
+        assert_eq!((out.code, out.stdout.as_str()), (2, ""), "{}", out.all());
+        assert_eq!(out.stderr.lines().count(), 1, "{}", out.all());
+        for part in [zero, part] {
+            assert!(out.stderr.contains(part), "{}", out.all());
+        }
+    }
+    let piped = format!("cat {contact} | {PATH} solve /dev/stdin --quiet -options_file /dev/null");
+    let out = command("sh").args(["-c", &piped]).output();
+    let out = out.expect("a shell");
+    assert!(
+        out.status.success(),
+        "{}",
+        String::from_utf8_lossy(&out.stderr)
+    );
+}

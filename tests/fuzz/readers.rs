@@ -37,7 +37,7 @@ pub fn scene(bytes: &[u8]) {
     let Some(spec) = judge(crate::scene::read(FILE, text), FILE) else {
         return;
     };
-    let need = Need::of(spec.bodies.iter(), &spec.form);
+    let need = Need::of(spec.bodies.iter(), &spec.form, true);
     if need.elements <= LARGEST && spec.bodies.len() <= MOST_BODIES {
         if let Some(scene) = judge(Scene::new(spec), "") {
             let _ = judge(scene.substructures(&|_| true), "");

@@ -243,6 +243,50 @@ fn a_singular_matrix_on_one_rank_only_is_named() {
     }
 }
 
+/// A row of zeros at a node that subdomains share, in one of them or in all.
+#[test]
+fn a_zero_row_on_an_interface_is_named() {
+    let started = as_rank(|session, case| {
+        let scene = Scene::load(MODEL)?;
+        let share = fetifeti::share(session, scene.n_subdomains());
+        let mut problem = scene.substructures(&|s| share.contains(&s))?;
+        // Inside the lower left body: a side of the first subdomain, and its corner with three others.
+        let (place, first_only) = match case {
+            "side" => ([0.0625, 0.25, 0.0], true),
+            _ => ([0.25, 0.25, 0.0], false),
+        };
+        for sub in &mut problem.local {
+            let n = sub.f.len();
+            let places = sub.coordinates.as_ref().expect("nodes have places");
+            let at = (0..n).find(|&i| places[i] == place);
+            let Some(at) = at.filter(|_| sub.index == 0 || !first_only) else {
+                continue;
+            };
+            let entries = |i: usize| {
+                let (columns, values) = sub.k.row(i);
+                let all = columns.iter().zip(values);
+                all.map(move |(&j, &v)| (i as u32, j, v))
+            };
+            let all = (0..n).flat_map(entries);
+            let kept = all.filter(|&(i, j, _)| i as usize != at && j as usize != at);
+            let kept: Vec<(u32, u32, f64)> = kept.collect();
+            sub.k = Csr::from_triplets(n, &kept);
+        }
+        FetiFeti::new(session, problem, MethodSettings::default())?.solve()?;
+        Ok(())
+    });
+    for ranks in RANKS {
+        for (case, place) in [("side", "(0.0625, 0.25, 0)"), ("corner", "(0.25, 0.25, 0)")] {
+            let out = started.run(ranks, case);
+            let parts = [
+                "in body \"left\" has a row of zeros on its interface",
+                place,
+            ];
+            said(&out, 2, &parts);
+        }
+    }
+}
+
 #[test]
 fn ranks_that_read_different_files_are_named() {
     let scratch = Scratch::new("faults-files");

@@ -211,6 +211,7 @@ const FUNCTIONS: &[&str] = &[
     "EPSSetWhichEigenpairs",
     "EPSSetDimensions",
     "EPSSetTolerances",
+    "EPSGetTolerances",
     "EPSSetTarget",
     "EPSSetConvergenceTest",
     "EPSSetDeflationSpace",

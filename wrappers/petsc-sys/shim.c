@@ -197,6 +197,8 @@ typedef struct {
   int    first, patience, restarts, found;
   double before[FF_PATIENCE]; /* the values of the last restarts; the oldest one is replaced next */
   double value, residual;
+  ff_told told;
+  void   *who;
 } ff_settling;
 
 static int HasSettled(const ff_settling *s, double tol, double size)
@@ -226,13 +228,13 @@ static PetscErrorCode ff_settled(EPS eps, PetscScalar eigr, PetscScalar eigi, Pe
   if (s->found) *errest = 0.0;
   s->before[s->restarts % s->patience] = s->value;
   s->restarts++;
-  return 0;
+  return (PetscErrorCode)s->told(s->who, s->restarts, s->residual);
 }
 
-int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, double *value, double *residual,
-                         int *found)
+int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, ff_told told, void *who,
+                         double *value, double *residual, int *found)
 {
-  ff_settling    s = {floor, loose, first, patience, 0, 0, {0.0}, 0.0, 0.0};
+  ff_settling    s = {floor, loose, first, patience, 0, 0, {0.0}, 0.0, 0.0, told, who};
   EPSConv        kind;
   PetscInt       n;
   PetscErrorCode code;

@@ -46,9 +46,10 @@ int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double 
       over `patience` restarts so small that d restarts / patience is below tol. The error is no more than that where
       the value approaches its limit like 1/restarts or faster, as it does at the end of a cluster.
    `value` and the relative `residual` are those at the end; `found` is 0, 1, or 2 for a value that has settled. Another
-   convergence test than the usual one, chosen by an option, is left alone. */
-int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, double *value, double *residual,
-                         int *found);
+   convergence test than the usual one, chosen by an option, is left alone. `told` is called at every restart. */
+typedef int (*ff_told)(void *who, int restarts, double residual);
+int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, ff_told told, void *who,
+                         double *value, double *residual, int *found);
 
 /* Collects PETSc's error frames instead of printing them. */
 typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);

@@ -111,6 +111,12 @@ impl PrimalMatrix {
         self.diagonal[body.clone()].iter().sum()
     }
 
+    /// Owned dofs whose diagonal entry is zero, with its shift.
+    pub fn slack(&self) -> impl Iterator<Item = usize> + '_ {
+        let all = self.diagonal.iter().zip(&self.shifts).enumerate();
+        all.filter(|(_, (d, s))| **d + **s == 0.0).map(|(i, _)| i)
+    }
+
     /// Adds to the diagonal entry of an owned dof.
     pub fn shift(&mut self, dof: usize, value: f64) {
         self.shifts[dof] += value;

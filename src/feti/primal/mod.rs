@@ -5,4 +5,5 @@ pub mod coarse;
 pub mod kernel;
 pub mod matrix;
 pub mod refinement;
+pub mod slack;
 pub mod space;

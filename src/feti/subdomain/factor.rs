@@ -101,13 +101,18 @@ pub(crate) fn factor(
             return Err(unfit_matrix(problem, sub, dof));
         }
         LocalProblem::new(&sub.k, delta, primal, &averages, places, condenser, form)
-            .map(|mut local| {
+            .map_err(|e| no_factor(problem, sub, e))
+            .and_then(|mut local| {
+                let gamma = &local.gamma;
+                // A fixing dof is one that nothing else holds.
+                if let Some(&i) = gamma.fixing.iter().find(|&&i| local.stiff[i] == 0.0) {
+                    return Err(no_stiffness(problem, sub, gamma.interface[i]));
+                }
                 if kind.copies < forms::MANY {
                     local.pack();
                 }
-                Arc::new(local)
+                Ok(Arc::new(local))
             })
-            .map_err(|e| no_factor(problem, sub, e))
     };
     let factored = team.map(kinds.len(), |k| {
         needed[k].then(|| make(k, kinds[k].j)).transpose()
@@ -232,6 +237,17 @@ fn slack(sub: &Subdomain, interface: [&[u32]; 2]) -> Option<u32> {
     let mut slack = sub.k.diagonal().into_iter().enumerate();
     let dofs = slack.find(|&(i, d)| d == 0.0 && !interface.concat().contains(&(i as u32)));
     dofs.map(|(i, _)| i as u32)
+}
+
+/// The error for a row of zeros at a dof of the interface.
+pub(crate) fn no_stiffness(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
+    let place = sub.coordinates.as_ref().map(|c| c[dof as usize]);
+    let place = place.map_or(String::new(), |[x, y, z]| format!(", at ({x}, {y}, {z})"));
+    Error::Unfit(format!(
+        "the matrix of subdomain {} in body \"{}\" has a row of zeros on its interface (at local dof {dof}{place}), \
+         expected a stiffness matrix that holds it",
+        sub.index, problem.body_names[sub.body]
+    ))
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {

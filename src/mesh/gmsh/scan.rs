@@ -1,6 +1,7 @@
 //! The bytes of a file as numbers, words and sections; messages name the place.
 
 use crate::error::{Error, Result};
+use crate::mesh::file::FARTHEST;
 
 /// How numbers stand in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -170,18 +171,23 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// The coordinates of a point; all are finite.
+    /// The coordinates of a point; all are finite, and none is beyond all units.
     pub fn point(&mut self) -> Result<[f64; 3]> {
         let mut point = [0.0; 3];
         for (x, axis) in point.iter_mut().zip(["x", "y", "z"]) {
             let at = self.at();
             *x = self.real("a coordinate")?;
-            if !x.is_finite() {
-                return Err(self.fail(
-                    at,
-                    format!("found {x} where the coordinate {axis} of a node was expected, which is finite"),
-                ));
-            }
+            let expected = match *x {
+                x if !x.is_finite() => "which is finite".into(),
+                x if x.abs() > FARTHEST => format!("at most {FARTHEST:e} (take other units)"),
+                _ => continue,
+            };
+            return Err(self.fail(
+                at,
+                format!(
+                    "found {x:e} where the coordinate {axis} of a node was expected, {expected}"
+                ),
+            ));
         }
         Ok(point)
     }

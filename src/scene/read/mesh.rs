@@ -9,6 +9,7 @@ use crate::mesh::{bytes, deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Memb
 use crate::scene::model::body::{held, BodySpec, Cut, Force, SurfaceLoad};
 use crate::scene::model::field::Field;
 use crate::scene::model::rigid_surface::RigidSurface;
+use crate::scene::quantity::unfit_size;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -82,6 +83,12 @@ impl Source {
         let parts = self.mesh.connected(&cells);
         let mesh = |part: &Vec<u32>| {
             let mesh = self.mesh.extract(part, self.scale)?;
+            if let Some((size, expected)) = unfit_size(&mesh.points) {
+                return item.error(format!(
+                    "cells of {} reach {size:e} from the origin where {expected} was expected (take another `scale`)",
+                    self.mesh.file().name
+                ));
+            }
             // The plane of a plane scene is z = 0.
             match mesh
                 .points

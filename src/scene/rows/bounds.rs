@@ -8,6 +8,7 @@ use crate::scene::body::Body;
 use crate::scene::model::profile::Limit;
 use crate::scene::model::spec::SceneSpec;
 use crate::scene::model::steps::{Factors, Steps};
+use crate::scene::quantity::unfit_length;
 use crate::scene::validate::agree;
 use crate::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
@@ -145,11 +146,11 @@ impl<'a> Checks<'a> {
         member: BodyNode,
     ) -> Result<Tightest> {
         let (value, entry) = factors.bound(limits);
-        if value.is_finite() {
+        let Some(expected) = unfit_length(value) else {
             return Ok((value, entry));
-        }
+        };
         Err(Error::Input(format!(
-            "{}the bound of body `{}` with its factor is {value} at {}{} where a finite number was expected",
+            "{}the bound of body `{}` with its factor is {value:e} at {}{} where {expected}",
             self.place(entry, member),
             self.bodies[member.body].spec.name,
             member.spot(self.bodies),

@@ -8,6 +8,7 @@ use crate::scene::geometry::interface::{Interface, Link};
 use crate::scene::model::joints::Extent;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::steps::Factors;
+use crate::scene::quantity::unfit_length;
 use std::collections::HashMap;
 
 /// The links of one interface while entries are added.
@@ -125,12 +126,12 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         let body = &self.bodies[bodies[order[0]]];
         let at = node.nodes[order[0]];
         let value = contact.gap.eval(node.t[0], &body.spec.variables(at));
-        if value.is_finite() {
+        let Some(expected) = unfit_length(value) else {
             return Ok(value);
-        }
+        };
         let ([a, b], at) = (self.names(), body.spec.spot(at));
         Err(Error::Input(format!(
-            "{}the gap of bodies `{a}` and `{b}` is {value} at {at} where a finite number was expected",
+            "{}the gap of bodies `{a}` and `{b}` is {value:e} at {at} where {expected}",
             entry.written
         )))
     }

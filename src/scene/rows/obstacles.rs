@@ -13,6 +13,7 @@ use crate::scene::model::joints::{Extent, ObstacleSpec};
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::steps::Factors;
+use crate::scene::quantity::unfit_length;
 use std::collections::{BTreeMap, HashMap};
 
 /// One bound on one side of a body.
@@ -230,10 +231,9 @@ pub(crate) fn find(
                         value -= dot(entry.motion, normal);
                     }
                     of_side.parameters.insert(node, t);
-                    if !value.is_finite() {
+                    if let Some(expected) = unfit_length(value) {
                         return fail(format!(
-                            "the bound `{key}` of body `{name}` is {value} at {} \
-                             where a finite number was expected",
+                            "the bound `{key}` of body `{name}` is {value:e} at {} where {expected}",
                             spot()
                         ));
                     }

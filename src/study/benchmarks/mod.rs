@@ -119,11 +119,14 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<BenchmarksReport> {
     let mut cases = Vec::new();
-    for case in super::chosen(CASES.into(), |c| c.name, only)? {
+    let chosen = super::chosen(CASES.into(), |c| c.name, only)?;
+    let n = chosen.len();
+    for (k, case) in chosen.into_iter().enumerate() {
         let mut runner = Runner {
             session,
             dir,
             quick,
+            case: format!("{} of {n}", k + 1),
             progress: &mut *progress,
         };
         let (series, skipped) = (case.run)(&mut runner)?;

@@ -23,6 +23,8 @@ pub struct Runner<'a> {
     pub dir: &'a Path,
     /// Whether smaller cases are run.
     pub quick: bool,
+    /// Which case it is of how many, as in "2 of 11".
+    pub case: String,
     /// Told before every mesh.
     pub progress: &'a mut dyn FnMut(&str),
 }
@@ -65,7 +67,7 @@ impl Runner<'_> {
         mesh: Option<&MeshFile>,
         rtol: f64,
     ) -> Result<Run> {
-        (self.progress)(name);
+        (self.progress)(&format!("{}, {name}", self.case));
         let file = format!("{name}.toml");
         let path = self.dir.join(&file);
         // Ranks may have one directory or each its own.

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::mesh::deck::cards::{Card, Row};
 use crate::mesh::deck::element::{shape, what_is, ElementType, Model};
 use crate::mesh::deck::numbers::clip;
+use crate::mesh::file::FARTHEST;
 use crate::mesh::CellKind;
 
 impl<'a> Reader<'a> {
@@ -30,6 +31,12 @@ impl<'a> Reader<'a> {
             let mut point = [0.0; 3];
             for (k, x) in point.iter_mut().enumerate() {
                 *x = row.real_or(self.files, k + 1, 0.0, "a coordinate")?;
+            }
+            if let Some(x) = point.iter().find(|x| x.abs() > FARTHEST) {
+                let message = format!(
+                    "node {id} has a coordinate {x:e} where at most {FARTHEST:e} was expected (take other units)"
+                );
+                return Err(self.files.error(row.place, message));
             }
             let mesh = &mut self.deck.mesh;
             let next = mesh.points.len() as u32;
