@@ -4,8 +4,8 @@ use super::outer::Certificate;
 use super::refine::over;
 use super::rows::Inequalities;
 
-/// A multiplier above minus this, relative to the largest one, counts as not pulling; a gap below this, relative to the
-/// largest u, counts as closed.
+/// A multiplier above minus this, relative to the largest one or to the loads, counts as not pulling; a gap below this,
+/// relative to the largest u, counts as closed.
 const ROUNDING: f64 = 1e-14;
 
 /// The rows with multipliers or gaps of the wrong sign, and the set that follows.
@@ -22,16 +22,18 @@ pub(super) struct Judged {
     pub score: Vec<f64>,
     /// Largest |λ| and largest |u|.
     pub largest: [f64; 2],
+    /// Multipliers below this are rounding beside the loads.
+    none: f64,
 }
 
 impl Judged {
-    /// Judges the solution on `active`; `u_max` is the largest displacement.
+    /// Judges the solution on `active`; `u_max` is the largest displacement, `load` the size of the loads.
     pub fn new(
         rows: &Inequalities,
         active: &[bool],
         lambda: Vec<f64>,
         gaps: Vec<f64>,
-        u_max: f64,
+        (u_max, load): (f64, f64),
     ) -> Judged {
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
@@ -40,13 +42,14 @@ impl Judged {
             wrong: vec![0.0; rows.len()],
             score: vec![0.0; rows.len()],
             largest: [lambda_max, u_max],
+            none: ROUNDING * load,
             lambda,
             gaps,
         };
         for (r, &on) in active.iter().enumerate() {
             let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
             out.score[r] = l + gap;
-            if on && l < -ROUNDING {
+            if on && l < -ROUNDING && out.lambda[r] < -out.none {
                 (out.next[r], out.wrong[r]) = (false, -l);
             } else if !on && gap > ROUNDING {
                 (out.next[r], out.wrong[r]) = (true, gap);
@@ -58,11 +61,17 @@ impl Judged {
     /// The certificate, given the last correction of u.
     pub fn certificate(&self, correction: f64) -> Certificate {
         let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
+        let pull = Some(most(&self.lambda, -1.0)).filter(|pull| *pull > self.none);
         Certificate {
             correction,
             feasibility: over(most(&self.gaps, 1.0), self.largest[1]),
-            pull: over(most(&self.lambda, -1.0), self.largest[0]),
+            pull: over(pull.unwrap_or(0.0), self.largest[0]),
         }
+    }
+
+    /// Whether a row pulls by no more than this part of the largest multiplier, or than rounding.
+    pub fn idle(&self, r: usize, part: f64) -> bool {
+        self.lambda[r] >= -(part * self.largest[0]).max(self.none)
     }
 
     /// Number of wrong rows.

@@ -222,7 +222,8 @@ pub fn solve(
             None => Signs::Any,
         };
         let lambda = multipliers(rows, &active, &forces, signs);
-        let judged = Judged::new(rows, &active, lambda, rows.gaps(&at), u.norm_inf()?);
+        let sizes = (u.norm_inf()?, reference);
+        let judged = Judged::new(rows, &active, lambda, rows.gaps(&at), sizes);
         let certificate = judged.certificate(correction);
         let relative = over(residual, reference);
         let mut next = judged.next.clone();
@@ -243,7 +244,7 @@ pub fn solve(
             true => certificate.holds(),
             false => relative <= tolerances.rtol,
         };
-        let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
+        let idle = |r: &usize| judged.idle(*r, IDLE);
         let held = restored.iter().all(idle);
         let wrong = judged.count();
         let worse = !held || wrong >= fewest;

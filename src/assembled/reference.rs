@@ -63,6 +63,11 @@ impl<'a> Reference<'a> {
         if let Some(trouble) = &layout.trouble {
             return Err(Error::input(format!("not for this scene: {trouble}")));
         }
+        if layout.unsupported > 0 {
+            return Err(Error::input(
+                "not for this scene: nothing holds a body whose nodes are all in inequalities",
+            ));
+        }
         let unknowns = Unknowns::all(layout);
         let problem = Problem::new(session, scene, &unknowns, Format::Assembled)?;
         let refiner;

@@ -5,15 +5,24 @@ use mpi::topology::SimpleCommunicator;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
-use crate::parallel::exchange::{max_all, total};
+use crate::parallel::exchange::{highest, max_all, total};
+use crate::substructures::Substructures;
 use crate::Result;
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
 /// depends on three others inherits the sum of their jumps.
 const NOISE: f64 = 3.0;
 
-/// Rounding of multipliers, relative to the largest one, and of gaps, relative to the largest displacement.
+/// Rounding of multipliers, relative to the largest one or to the loads of a subdomain, and of gaps, relative to the largest displacement.
 pub const ROUNDING: f64 = 1e-14;
+
+/// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are none, whatever the
+/// largest one is: where bodies touch without force, all of them are what sums of loads leave. Collective.
+pub fn largest_load(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
+    let each = problem.local.iter();
+    let each = each.map(|s| s.f.iter().map(|f| f.abs()).sum::<f64>());
+    highest(comm, each.fold(0.0, f64::max))
+}
 
 /// B y − c on the owned rows, including those that do not hold. Collective.
 pub fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
@@ -42,15 +51,16 @@ pub struct JudgedRows {
 }
 
 impl JudgedRows {
-    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank. A gap
-    /// counts as violated only if it is above `open`, relative to the largest displacement. There is no such tolerance
-    /// for multipliers: a row that pulls little may hold up a body that gives way much. Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank, `load`
+    /// the [`largest_load`]. A gap counts as violated only if it is above `open`, relative to the largest displacement.
+    /// There is no such tolerance for multipliers: a row that pulls little may hold up a body that gives way much.
+    /// Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
         gaps: &[f64],
         lambda: &[f64],
-        y: f64,
+        (y, load): (f64, f64),
         open: f64,
     ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
@@ -64,6 +74,7 @@ impl JudgedRows {
         }
         max_all(comm, &mut largest);
         let [jump_left, lambda_max, y_max, contradictory] = largest;
+        let lambda_max = lambda_max.max(ROUNDING * load);
         let mut rows = JudgedRows {
             active: jump.active.clone(),
             contradictory: contradictory > 0.0,
@@ -73,7 +84,7 @@ impl JudgedRows {
             y_max,
         };
         let open = (NOISE * jump_left).max(open * y_max);
-        let pull = ROUNDING * lambda_max;
+        let pull = ROUNDING * lambda_max.max(load);
         for r in contact.filter(|&r| jump.inequality[r]) {
             if jump.active[r] && lambda[r] < -pull {
                 rows.active[r] = false;

@@ -15,11 +15,18 @@ pub(super) struct Pulling<'a> {
     comm: &'a SimpleCommunicator,
     rows: Vec<usize>,
     before: Vec<f64>,
+    /// The largest load.
+    load: f64,
 }
 
 impl<'a> Pulling<'a> {
-    /// The multipliers at the start of the solve.
-    pub fn new(comm: &'a SimpleCommunicator, jump: &Jump, at: &Iterate) -> Result<Pulling<'a>> {
+    /// The multipliers at the start of the solve; `load` is the [`judge::largest_load`].
+    pub fn new(
+        comm: &'a SimpleCommunicator,
+        jump: &Jump,
+        at: &Iterate,
+        load: f64,
+    ) -> Result<Pulling<'a>> {
         let all = jump.rows_between_bodies();
         let rows: Vec<usize> = all
             .filter(|&r| jump.inequality[r] && jump.active[r])
@@ -29,6 +36,7 @@ impl<'a> Pulling<'a> {
             comm,
             before: rows.iter().map(|&r| lambda[r]).collect(),
             rows,
+            load,
         })
     }
 
@@ -37,7 +45,7 @@ impl<'a> Pulling<'a> {
     pub fn lasts(&mut self, lambda: &PetscVec) -> Result<bool> {
         let lambda = lambda.array()?;
         let now: Vec<f64> = self.rows.iter().map(|&r| lambda[r]).collect();
-        let mut largest = [now.iter().fold(0.0f64, |a, l| a.max(l.abs()))];
+        let mut largest = [now.iter().fold(self.load, |a, l| a.max(l.abs()))];
         max_all(self.comm, &mut largest);
         let pull = judge::ROUNDING * largest[0];
         let mut pairs = self.before.iter().zip(&now);

@@ -4,6 +4,7 @@
 //! and may still have the wrong sign when displacements have converged. The certificate then refines the solution with
 //! the rows that hold, and multipliers get their digits: some may turn out to pull.
 
+use super::judge::largest_load;
 use super::state::State;
 use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
@@ -15,7 +16,7 @@ use crate::Result;
 /// multiplier or displacement. The energy changes by the square of the pull.
 const WRONG: f64 = 10.0;
 
-/// Rounding of certified multipliers and gaps: less than this says nothing, whatever the tolerance.
+/// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the tolerance.
 const ROUNDING: f64 = 1e-12;
 
 /// Factor by which the tolerance becomes smaller for the steps that follow.
@@ -38,7 +39,9 @@ pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<
         size(&mut solution.u.iter().flatten()),
     ];
     max_all(dual.comm(), &mut largest);
+    let load = largest_load(dual.comm(), &method.problem);
     let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
+    let pull = pull.max(ROUNDING * load);
     let mut active = jump.active.clone();
     for block in &jump.blocks {
         leave(block, jump, &solution.lambda, pull, &mut active);

@@ -17,7 +17,7 @@ use mpi::topology::SimpleCommunicator;
 use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::judge;
-use super::mprgp::Setting;
+use super::mprgp::{Bounded, Setting};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, Progress, State, Step};
 use crate::feti::krylov::loads::Loads;
@@ -117,7 +117,7 @@ struct Search<'a> {
     a: Augmented<'a>,
     /// Pᵀ S (d − F λ̃).
     b: Vec<f64>,
-    /// ‖b‖; tolerances are relative to it.
+    /// ‖b‖, or ‖Pᵀ A x‖ of the bounds l₊ where that is larger; tolerances are relative to it.
     size: f64,
     shift: Vec<f64>,
     lower: Vec<f64>,
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
             (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
         };
         method.set_active(&all)?;
-        let a = Augmented::new(method, settings.face_pc)?;
+        let mut a = Augmented::new(method, settings.face_pc)?;
         let dual = method.dual();
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(problem, &dual);
@@ -161,19 +161,25 @@ impl<'a> Search<'a> {
         }
         let mut b = a.unscaled(&r); /*                    b = S(d − F λ̃)  */
         a.balance.project(comm, &mut b);
-        let square = total(comm, b.iter().map(|b| b * b).sum());
         let lower: Vec<f64> = (0..jump.n_owned)
             .map(|i| match jump.inequality[i] {
                 true => -shift[i],
                 false => f64::NEG_INFINITY,
             })
             .collect();
+        // Without bounds λ̃ may be the solution: b is rounding, and what the bounds add to it is the size of the problem.
+        let first: Vec<f64> = lower.iter().map(|l| l.max(0.0)).collect();
+        let mut of_bounds = vec![0.0; first.len()];
+        a.apply(&first, &mut of_bounds)?;
+        a.balance.project(comm, &mut of_bounds);
+        let square = |v: &[f64]| total(comm, v.iter().map(|v| v * v).sum());
+        let size = square(&b).max(square(&of_bounds)).sqrt();
         let warm = state.lambda.iter().any(|l| *l != 0.0);
         let warm = any(comm, warm);
         let start = a.scaled(&state.lambda);
         let x = (0..jump.n_owned).map(|i| match warm {
             true => (start[i] - shift[i]).max(lower[i]),
-            false => lower[i].max(0.0),
+            false => first[i],
         });
         Ok(Search {
             x: x.collect(),
@@ -181,7 +187,7 @@ impl<'a> Search<'a> {
             contact: jump.rows_between_bodies(),
             a,
             b,
-            size: square.sqrt(),
+            size,
             shift,
             lower,
             m: M_START,

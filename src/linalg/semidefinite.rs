@@ -13,6 +13,9 @@ pub const DEPENDENT: f64 = 1e-10;
 /// small.
 pub const ZERO: f64 = 1e-30;
 
+/// Steps of inverse iteration that tell whether a matrix is singular.
+const INVERSE: usize = 3;
+
 /// A factored semidefinite matrix A (n × n).
 #[derive(Debug)]
 pub struct Semidefinite {
@@ -48,7 +51,10 @@ impl Semidefinite {
             nonzero: nonzero.len(),
             ..out
         };
-        if let Some(out) = Self::factor(a, &nonzero, dependent) {
+        // Without a choice of pivots a dependent column need not show: the last pivot is rounding over the square of its
+        // coefficient in the combination that vanishes.
+        let regular = Self::factor(a, &nonzero, dependent);
+        if let Some(out) = regular.filter(|out| out.weakest() > dependent) {
             return known(out);
         }
         let mut kept = independent(a, &nonzero, dependent);
@@ -79,6 +85,24 @@ impl Semidefinite {
             scale,
             l,
         })
+    }
+
+    /// An upper bound of the smallest eigenvalue of the scaled kept part, near it as a rule: inverse iteration.
+    fn weakest(&self) -> f64 {
+        let norm = |x: &Dense| x.data.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let mut x = Dense::from_fn(self.kept.len(), 1, |i, _| {
+            1.0 + ((i * 7919) % 13) as f64 / 13.0
+        });
+        let mut least = f64::INFINITY;
+        for _ in 0..INVERSE {
+            let before = norm(&x);
+            dense::solve_lower(self.l.view(), x.view_mut());
+            dense::solve_lower_transpose(self.l.view(), x.view_mut());
+            let after = norm(&x);
+            least = least.min(before / after);
+            x.data.iter_mut().for_each(|v| *v /= after);
+        }
+        least
     }
 
     /// Number of columns.

@@ -46,6 +46,8 @@ pub struct Layout<'a> {
     eliminated: Eliminated,
     /// Supports with their linear forms in the rigid motions.
     supports: Vec<(u64, Functional)>,
+    /// Number of rigid motions that nothing holds and for which there is no support.
+    pub unsupported: usize,
     /// The frames of nodes at which w is not u.
     frames: BTreeMap<u64, Frame>,
     /// The inequalities between more than two unknowns.
@@ -77,6 +79,7 @@ impl<'a> Layout<'a> {
             void: Vec::new(),
             eliminated: Eliminated::default(),
             supports: Vec::new(),
+            unsupported: 0,
             frames: BTreeMap::new(),
             combined: Combined::default(),
             all_held: held.clone(),
@@ -149,7 +152,8 @@ impl<'a> Layout<'a> {
         self.void.clone_from(&self.filled);
     }
 
-    /// Chooses supports for the rigid motions that nothing holds, beside the nodes in inequalities.
+    /// Chooses supports for the rigid motions that nothing holds: beside the nodes in inequalities, or there along
+    /// components that no inequality bounds.
     fn support(&mut self, bounded: &Bounded) {
         let loose = self.motions.len() - self.all_held.rank();
         if loose == 0 {
@@ -157,6 +161,7 @@ impl<'a> Layout<'a> {
         }
         let c = self.components as u64;
         let mut candidates: Vec<(u64, Functional)> = Vec::new();
+        let mut beside_rows: Vec<(u64, Functional)> = Vec::new();
         for (b, body) in self.scene.bodies.iter().enumerate() {
             let mesh = body.mesh();
             for node in mesh.boundary() {
@@ -168,14 +173,21 @@ impl<'a> Layout<'a> {
                     let at = self.index(body.first_dof + inside as u64);
                     let taken =
                         self.eliminated.get(at).is_some() || self.combined.get(at).is_some();
-                    if bounded.contains_key(&(at / c)) || taken {
+                    if taken {
                         continue;
                     }
-                    candidates.push((at, self.motions.form(b, body.spec.position(node), k)));
+                    let form = self.motions.form(b, body.spec.position(node), k);
+                    match bounded.get(&(at / c)) {
+                        None => candidates.push((at, form)),
+                        Some(of) if self.frames.contains_key(&(at / c)) || of.bounds(k) => {}
+                        Some(_) => beside_rows.push((at, form)),
+                    }
                 }
             }
         }
+        candidates.extend(beside_rows);
         self.supports = self.all_held.complete(self.motions.len(), &candidates);
+        self.unsupported = loose - self.supports.len();
         self.void.extend(self.supports.iter().map(|s| s.0));
         self.void.sort_unstable();
     }

@@ -16,6 +16,13 @@ pub(super) struct Directions {
     firm: usize,
 }
 
+impl Directions {
+    /// Whether a direction has component `k`.
+    pub(super) fn bounds(&self, k: usize) -> bool {
+        self.list.iter().any(|d| d[k].abs() > 1e-12)
+    }
+}
+
 /// Nodes whose unknowns inequalities take.
 pub(super) type Bounded = BTreeMap<u64, Directions>;
 

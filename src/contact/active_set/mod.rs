@@ -122,6 +122,8 @@ pub(super) struct ActiveSet<'a> {
     n_rows: usize,
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
+    /// The largest load, beside which multipliers are rounding.
+    load: f64,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -159,6 +161,7 @@ impl<'a> ActiveSet<'a> {
             at,
             n_rows,
             least: method.least_residual(),
+            load: judge::largest_load(method.session.comm(), problem),
             placed: false,
             gaps: Vec::new(),
             held: Vec::new(),
@@ -266,7 +269,12 @@ impl<'a> ActiveSet<'a> {
             (false, _) => target.max(reduced),
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);
-        let mut pulling = Pulling::new(session.comm(), &method.dual().stiffness.jump, &self.at)?;
+        let mut pulling = Pulling::new(
+            session.comm(),
+            &method.dual().stiffness.jump,
+            &self.at,
+            self.load,
+        )?;
         let mut look = |lambda: &PetscVec| pulling.lasts(lambda);
         let watched = tight && !self.exact && self.watched;
         let look: Option<&mut Look> = if watched { Some(&mut look) } else { None };

@@ -39,8 +39,8 @@ impl ActiveSet<'_> {
         }
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
-        let y = self.at.residual.largest();
-        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.open);
+        let sizes = (self.at.residual.largest(), self.load);
+        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, sizes, self.open);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         let load = &self.at.loads.kernel;

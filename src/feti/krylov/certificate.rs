@@ -15,7 +15,7 @@ use crate::Result;
 const CREDIBLE: f64 = 1e4;
 
 /// Displacements and forces below this part of the problem's scale are measured against that scale: a solution u = 0
-/// has none of its own.
+/// has none of its own, and bodies may touch without force.
 const SMALL: f64 = 1e-8;
 
 /// How well the optimality conditions hold, relative to the sizes of their terms.
@@ -108,7 +108,10 @@ impl Certificate {
         let forces = sums[1].sqrt() + sums[2].sqrt();
         let residual = (sums[0] + primal).sqrt();
 
-        let mut largest = [0.0, 0.0, 0.0, 0.0, scale]; // |u|, |λ|, violation, |λ (Bu − c)|, scale
+        let loads = problem.local.iter();
+        let loads = loads.map(|s| s.f.iter().map(|f| f.abs()).sum::<f64>());
+        // |u|, |λ|, violation, |λ (Bu − c)|, scale, loads of a subdomain
+        let mut largest = [0.0, 0.0, 0.0, 0.0, scale, loads.fold(0.0, f64::max)];
         let mut smallest = [0.0f64];
         largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
         for r in 0..jump.n_owned {
@@ -127,7 +130,8 @@ impl Certificate {
         drop(lambda);
         max_all(comm, &mut largest);
         min_all(comm, &mut smallest);
-        let [u_max, lambda_max, violation, product, length] = largest;
+        let [u_max, lambda_max, violation, product, length, load] = largest;
+        let lambda_max = lambda_max.max(SMALL * load);
         let (u_least, least) = (SMALL * length, SMALL * length * sums[7].sqrt());
         Ok(Certificate {
             kkt: Kkt {

@@ -41,6 +41,10 @@ const STILL: f64 = 1e-12;
 /// projection.
 const SOUND: f64 = 1e-10;
 
+/// The part of the superlumped diagonal that is then added to M⁻¹ in Q. Motions that M⁻¹ does not see, because averages
+/// of the bodies' motions are motions of the bodies, are seen by it, and the others hardly.
+const MENDED: f64 = 1e-4;
+
 /// G, Q G and the factored Gᵀ Q G; empty if no body floats.
 pub struct NaturalCoarse {
     /// Number of kernel vectors of all bodies, r.
@@ -73,6 +77,8 @@ pub struct NaturalCoarse {
     pub g: Rows,
     /// Q G where it differs from G.
     qg: Option<Rows>,
+    /// Whether M⁻¹ alone was not enough for Q.
+    mended: bool,
     /// (Gᵀ Q G)⁻¹, where a body floats.
     pub gtg: Option<Gtg>,
     prefix: String,
@@ -128,6 +134,7 @@ impl NaturalCoarse {
             numbers: RefCell::default(),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
+            mended: false,
             gtg: None,
             prefix: prefix.into(),
         };
@@ -140,12 +147,9 @@ impl NaturalCoarse {
             natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
-            if auto && natural.projector == ProjectorKind::Preconditioner {
-                let defect = natural.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
-                if defect.is_nan() || defect > SOUND {
-                    natural.projector = ProjectorKind::Diagonal;
-                    natural.renew(problem, stiffness, preconditioner)?;
-                }
+            if auto && natural.mended {
+                natural.projector = ProjectorKind::Diagonal;
+                natural.renew(problem, stiffness, preconditioner)?;
             }
         }
         Ok(natural)
@@ -158,6 +162,30 @@ impl NaturalCoarse {
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
     ) -> Result<()> {
+        self.weighted(problem, stiffness, preconditioner, 0.0)?;
+        let weak = self.projector == ProjectorKind::Preconditioner && !self.is_sound()?;
+        // An answer that is as bad with the diagonal has another reason.
+        self.mended = weak;
+        match weak {
+            true => self.weighted(problem, stiffness, preconditioner, MENDED),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether P is a projection to more digits than an iteration needs.
+    fn is_sound(&self) -> Result<bool> {
+        let defect = self.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
+        Ok(defect <= SOUND)
+    }
+
+    /// G, Q G and Gᵀ Q G with Q = M⁻¹ + `rest` times the superlumped diagonal, if Q is to be M⁻¹. Collective.
+    fn weighted(
+        &mut self,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        preconditioner: &Preconditioner,
+        rest: f64,
+    ) -> Result<()> {
         if self.r == 0 {
             return Ok(());
         }
@@ -169,7 +197,7 @@ impl NaturalCoarse {
                 Some(qg)
             }
             ProjectorKind::Preconditioner => {
-                let rigid = self.rigid_rows(problem, stiffness)?;
+                let rigid = self.rigid_rows(problem, stiffness, rest)?;
                 Some(self.probe(problem, stiffness, preconditioner, &rigid)?)
             }
             _ => None,

@@ -15,8 +15,8 @@ use crate::substructures::Substructures;
 use crate::Result;
 
 /// Bodies that differ in stiffness by more than this are too far apart for all rows of M⁻¹: P would magnify rounding by
-/// the ratio. Up to it Q is M⁻¹ itself.
-pub(super) const APART: f64 = 1e7;
+/// the ratio, and λ₀ would be larger than λ by as much. Up to it Q is M⁻¹ itself.
+pub(super) const APART: f64 = 1e4;
 
 /// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them.
 /// It is called only if some body floats.
@@ -89,20 +89,21 @@ impl NaturalCoarse {
         Ok(q)
     }
 
-    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, zero on the others. A
-    /// row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
+    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, and `rest` times it on
+    /// the others. A row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
     /// touches nothing else, M⁻¹ G vanishes.
     pub(super) fn rigid_rows(
         &self,
         problem: &Substructures,
         stiffness: &Stiffness,
+        rest: f64,
     ) -> Result<Vec<f64>> {
         let mut out = self.superlumped(problem, stiffness)?;
         let jump = &stiffness.jump;
         out[..jump.n_owned_local].fill(0.0);
         for (q, &r) in out[jump.n_owned_local..].iter_mut().zip(&jump.order) {
             if problem.rows[r].terms.len() > 1 {
-                *q = 0.0;
+                *q *= rest;
             }
         }
         Ok(out)

@@ -51,3 +51,24 @@ fn zero_columns_are_dropped() {
     factor.solve(&mut x);
     assert_eq!(x, [2.0, 0.0, 3.0]);
 }
+
+#[test]
+fn a_dependent_column_that_no_pivot_shows_is_found() {
+    // V with V z = 0 for a z that hardly has the last column: the last pivot is rounding over its square, 1e-7.
+    let z = [0.5, -0.3, 0.7, 0.4, 1e-5];
+    let n = z.len();
+    let square: f64 = z.iter().map(|z| z * z).sum();
+    let rows: Vec<Vec<f64>> = (0..7)
+        .map(|i| {
+            let mut row = random(n, i + 1);
+            let part: f64 = row.iter().zip(z).map(|(v, z)| v * z).sum();
+            row.iter_mut()
+                .zip(z)
+                .for_each(|(v, z)| *v -= part / square * z);
+            row
+        })
+        .collect();
+    let a = Dense::from_fn(n, n, |i, j| rows.iter().map(|row| row[i] * row[j]).sum());
+    let factor = Semidefinite::new(&a);
+    assert_eq!(factor.rank(), n - 1, "{:?}", factor.dropped());
+}
