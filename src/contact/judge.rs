@@ -13,7 +13,8 @@ use crate::Result;
 /// depends on three others inherits the sum of their jumps.
 const NOISE: f64 = 3.0;
 
-/// Rounding of multipliers, relative to the largest one or to the loads of a subdomain, and of gaps, relative to the largest displacement.
+/// Rounding of multipliers, relative to the largest one or to the loads of a subdomain, and of gaps, relative to the
+/// largest displacement.
 pub const ROUNDING: f64 = 1e-14;
 
 /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are none, whatever the
@@ -51,10 +52,10 @@ pub struct JudgedRows {
 }
 
 impl JudgedRows {
-    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank, `load`
-    /// the [`largest_load`]. A gap counts as violated only if it is above `open`, relative to the largest displacement.
-    /// There is no such tolerance for multipliers: a row that pulls little may hold up a body that gives way much.
-    /// Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank,
+    /// `load` the [`largest_load`]. A gap counts as violated only if it is above `open`, relative to the largest
+    /// displacement. There is no such tolerance for multipliers: a row that pulls little may hold up a body that gives
+    /// way much. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,

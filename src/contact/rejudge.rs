@@ -16,7 +16,8 @@ use crate::Result;
 /// multiplier or displacement. The energy changes by the square of the pull.
 const WRONG: f64 = 10.0;
 
-/// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the tolerance.
+/// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the
+/// tolerance.
 const ROUNDING: f64 = 1e-12;
 
 /// Factor by which the tolerance becomes smaller for the steps that follow.

@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
                 false => f64::NEG_INFINITY,
             })
             .collect();
-        // Without bounds λ̃ may be the solution: b is rounding, and what the bounds add to it is the size of the problem.
+        // Without bounds λ̃ may be the solution: b is rounding, and what the bounds add to it has the problem's size.
         let first: Vec<f64> = lower.iter().map(|l| l.max(0.0)).collect();
         let mut of_bounds = vec![0.0; first.len()];
         a.apply(&first, &mut of_bounds)?;

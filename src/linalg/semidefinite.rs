@@ -51,8 +51,8 @@ impl Semidefinite {
             nonzero: nonzero.len(),
             ..out
         };
-        // Without a choice of pivots a dependent column need not show: the last pivot is rounding over the square of its
-        // coefficient in the combination that vanishes.
+        // Without a choice of pivots a dependent column need not show: the last pivot is rounding over the square of
+        // its coefficient in the combination that vanishes.
         let regular = Self::factor(a, &nonzero, dependent);
         if let Some(out) = regular.filter(|out| out.weakest() > dependent) {
             return known(out);

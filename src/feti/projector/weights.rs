@@ -89,9 +89,9 @@ impl NaturalCoarse {
         Ok(q)
     }
 
-    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, and `rest` times it on
-    /// the others. A row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
-    /// touches nothing else, M⁻¹ G vanishes.
+    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, and `rest` times it
+    /// on the others. A row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a
+    /// floating body that touches nothing else, M⁻¹ G vanishes.
     pub(super) fn rigid_rows(
         &self,
         problem: &Substructures,
