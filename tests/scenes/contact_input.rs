@@ -319,8 +319,7 @@ fn steps() {
         "[grid]\nbodies = 2\nelements = 2\nramp = 1\n",
         "s.toml:1: a `ramp` in a scene without load steps ([steps] was expected)",
     );
-    let huge =
-        "[[contact]]\nbodies = \"all\"\ngap = 1e40\n[steps]\ncount = 2\ngap = \"1e300*t\"\n";
+    let huge = "[[contact]]\nbodies = \"all\"\ngap = 1e40\n[steps]\ncount = 2\ngap = \"1e300*t\"\n";
     check(
         &pair(huge),
         "s.toml:11: the bound of body `a` with its factor is inf at (1, 0), t = 0.5 where a finite number was expected",
