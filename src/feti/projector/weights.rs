@@ -15,8 +15,8 @@ use crate::substructures::Substructures;
 use crate::Result;
 
 /// Bodies that differ in stiffness by more than this are too far apart for all rows of M⁻¹: P would magnify rounding by
-/// the ratio, and λ₀ would be larger than λ by as much. Up to it Q is M⁻¹ itself.
-pub(super) const APART: f64 = 1e4;
+/// the ratio. Up to it Q is M⁻¹ itself.
+pub(super) const APART: f64 = 1e7;
 
 /// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them.
 /// It is called only if some body floats.
