@@ -20,9 +20,7 @@ pub const ROUNDING: f64 = 1e-14;
 /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are none, whatever the
 /// largest one is: where bodies touch without force, all of them are what sums of loads leave. Collective.
 pub fn largest_load(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
-    let each = problem.local.iter();
-    let each = each.map(|s| s.f.iter().map(|f| f.abs()).sum::<f64>());
-    highest(comm, each.fold(0.0, f64::max))
+    highest(comm, problem.largest_load())
 }
 
 /// B y − c on the owned rows, including those that do not hold. Collective.

@@ -137,3 +137,12 @@ pub struct Substructures {
     /// The rows that this rank provides. Each row of the problem is provided by exactly one rank.
     pub rows: Vec<InterfaceRow>,
 }
+
+impl Substructures {
+    /// The loads on one subdomain, Σ|f|, the largest of this rank's.
+    pub(crate) fn largest_load(&self) -> f64 {
+        let each = self.local.iter();
+        let each = each.map(|s| s.f.iter().map(|f| f.abs()).sum());
+        each.fold(0.0, f64::max)
+    }
+}

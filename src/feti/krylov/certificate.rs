@@ -108,10 +108,8 @@ impl Certificate {
         let forces = sums[1].sqrt() + sums[2].sqrt();
         let residual = (sums[0] + primal).sqrt();
 
-        let loads = problem.local.iter();
-        let loads = loads.map(|s| s.f.iter().map(|f| f.abs()).sum::<f64>());
         // |u|, |λ|, violation, |λ (Bu − c)|, scale, loads of a subdomain
-        let mut largest = [0.0, 0.0, 0.0, 0.0, scale, loads.fold(0.0, f64::max)];
+        let mut largest = [0.0, 0.0, 0.0, 0.0, scale, problem.largest_load()];
         let mut smallest = [0.0f64];
         largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
         for r in 0..jump.n_owned {
