@@ -2,8 +2,8 @@
 //!
 //! Where nothing but contact holds a body, and no load drives it, it may stand in many places. Two solutions then
 //! differ by a motion r without energy, of any size. K r = 0 holds in numbers only to ε ‖K‖, so that wᵀK w of their
-//! difference has rounding of ε ‖K‖ |r|², of either sign, which can be 1e-3 of the solution. The energy is therefore that
-//! of w − r, subdomain by subdomain.
+//! difference has rounding of ε ‖K‖ |r|², of either sign, which can be 1e-3 of the solution. The energy is therefore
+//! that of w − r, subdomain by subdomain.
 
 use super::layout::Layout;
 use super::system::System;
