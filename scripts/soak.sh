@@ -7,9 +7,10 @@
 #   COUNT      scenes; 0: no limit
 #   RANKS      1 without it
 #
-# The report is printed and stands in target/fuzz/soak.txt: a line for every scene that went wrong, and counts. A scene
-# that crashes the program or takes two minutes is one of them; the run goes on behind it. `scripts/soak.sh --print SEED
-# DIR` writes the scene of a seed into a directory. Exit code 1: a scene went wrong; 3: something is missing.
+# The report is printed and stands in target/fuzz/soak.txt: a line for every scene that went wrong or whose solve did
+# not converge and said so, and counts. A scene that crashes the program or takes two minutes went wrong; the run goes
+# on behind it. `scripts/soak.sh --print SEED DIR` writes the scene of a seed into a directory. Exit code 1: a scene
+# went wrong; 3: something is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -50,13 +51,14 @@ while :; do
 done
 {
     sed -n 's/^\(wrong\|crashed\) \([0-9]*\) [^ ]* /seed \2: /p' "$parts"
+    sed -n 's/^not_converged \([0-9]*\) [^ ]* /not converged, seed \1: /p' "$parts"
     awk '{ all++; n[$1]++ }
         $1 == "right" && $4 + 0 > error { error = $4 + 0; at = $2 }
         $3 + 0 > slow { slow = $3 + 0; by = $2 }
         END {
             print "scenes", all + 0
-            split("right refused no_solution undecided wrong crashed", kinds)
-            for (k = 1; k <= 6; k++) print kinds[k], n[kinds[k]] + 0
+            split("right refused no_solution undecided not_converged wrong crashed", kinds)
+            for (k = 1; k <= 7; k++) print kinds[k], n[kinds[k]] + 0
             print "largest error", error + 0, "at seed", at
             print "slowest", slow + 0, "s at seed", by
         }' "$parts"

@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
         if state.reference == 0.0 {
             motion::check_few(&method.problem, &dual, &at.loads.kernel)?;
             natural.check_held(&method.problem, stiffness, &at.loads.kernel)?;
-            at.balance(&dual)?;
+            at.begin(&dual)?;
             state.reference = at.evaluate_projected(&dual)?;
         }
         at.lambda.array_mut()?.copy_from_slice(&state.lambda);
@@ -216,7 +216,7 @@ impl<'a> Search<'a> {
             *l = if *on { *l } else { 0.0 };
         }
         drop(lambda);
-        self.at.balance(&dual)?;
+        self.at.begin(&dual)?;
         let first = self.at.evaluate_projected(&dual)?;
         drop(dual);
 
@@ -248,7 +248,7 @@ impl<'a> Search<'a> {
             if restored > 0 && !centred {
                 centred = true;
                 self.at.loads.jumps = Some(self.jumps(&active, true));
-                self.at.balance(&method.dual())?;
+                self.at.begin(&method.dual())?;
             } else {
                 reduction *= MORE;
             }

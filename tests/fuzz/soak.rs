@@ -42,6 +42,8 @@ pub enum Fate {
     NoSolution(String),
     /// The direct solver has no answer to compare with.
     Undecided(String),
+    /// The method did not converge, and says so; why.
+    NotConverged(String),
     /// A panic, a wrong answer, a refusal of what has a solution, a sentence without a place.
     Wrong(String),
 }
@@ -119,7 +121,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
             // Where rounding keeps the residual above the bound, the error says whether it matters.
             let converged = outcome.reason.starts_with("CONVERGED");
             if let Some(message) = outcome.message.filter(|_| !converged) {
-                return Ok(Fate::Wrong(format!("{}: {message}", outcome.reason)));
+                return Ok(Fate::NotConverged(message));
             }
             let active = outcome.contact.map(|c| c.active).unwrap_or_default();
             let verdict = match judge(session, scene, &[(file.clone(), active)]) {
@@ -151,7 +153,9 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
                 return Ok(Fate::Undecided(format!("{said}; many rows")));
             }
             let reference = Reference::new(session, scene, &layout, Precision::Twice, None);
+            let loud = matches!(e, Error::NotConverged(_));
             Ok(match reference {
+                Ok(r) if r.found.converged && loud => Fate::NotConverged(said),
                 Ok(r) if r.found.converged => Fate::Wrong(format!("a solution was missed: {said}")),
                 Ok(_) => Fate::NoSolution(said),
                 Err(Error::Input(why)) => Fate::Undecided(format!("{said}; {why}")),

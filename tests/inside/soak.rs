@@ -49,6 +49,18 @@ fn motions_that_the_preconditioner_does_not_see_are_projected_out() {
     );
 }
 
+/// Q = M⁻¹ and bodies that differ by 10⁵: λ₀ was 10⁵ times as large as what balances the loads.
+#[test]
+fn multipliers_begin_no_larger_than_the_loads() {
+    fates(&[430026, 47899, 408387], solved);
+}
+
+/// Q = I and stiffnesses that jump by 10⁵ inside bodies: κ is 1.6e6, and the residual falls long before the error.
+#[test]
+fn errors_fall_where_residuals_say_little() {
+    fates(&[201564], solved);
+}
+
 /// SMALBE where the unconstrained problem is solved at once; bodies that touch without force.
 #[test]
 fn contact_loops_end() {

@@ -194,7 +194,7 @@ impl<'a> ActiveSet<'a> {
         dual.natural
             .check_held(&method.problem, &dual.stiffness, &self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
-        self.at.balance(&dual)?;
+        self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)
     }
 
@@ -250,7 +250,7 @@ impl<'a> ActiveSet<'a> {
                 *l = if *on { *l } else { 0.0 };
             }
             drop(lambda);
-            self.at.balance(&dual)?;
+            self.at.begin(&dual)?;
             self.at.evaluate(&dual)?;
         }
         dual.p_transpose(&self.at.residual.r)?;

@@ -231,7 +231,7 @@ impl Check<'_> {
         let comm = self.dual.comm();
         let f: Vec<&[f64]> = self.problem.local.iter().map(|s| &s.f[..]).collect();
         let load = natural.kernel_load(comm, &f, &g);
-        natural.balance(comm, &load, &lambda)?;
+        natural.begin(comm, &load, &lambda)?;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         stiffness.dual_halo.fetch(&lambda, &mut ghost)?;
         let loads = g.iter().enumerate().map(|(j, g)| {

@@ -104,7 +104,7 @@ impl LinearMethod {
         let forces: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
         let loads = Loads::of(dual, &forces, Some(jumps));
         let mut at = Iterate::new(dual, loads)?;
-        at.balance(dual)?;
+        at.begin(dual)?;
         let first = at.evaluate_projected(dual)?;
         let control = IterationControl::to(reduction * first, at.residual.size);
         let run = iterate(self, &at.residual.r, &at.lambda, &control, None)?;

@@ -116,6 +116,12 @@ impl Iterate {
         dual.natural.balance(dual.comm(), load, &self.lambda)
     }
 
+    /// The same, to begin an iteration with: by no forces that it would have to take back. Collective.
+    pub fn begin(&self, dual: &Dual) -> Result<()> {
+        let load = &self.loads.kernel;
+        dual.natural.begin(dual.comm(), load, &self.lambda)
+    }
+
     /// Computes y and r of λ. Collective.
     pub fn evaluate(&mut self, dual: &Dual) -> Result<()> {
         self.residual.evaluate(dual, &self.loads, &self.lambda)

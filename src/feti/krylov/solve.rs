@@ -35,6 +35,11 @@ const ASKED: usize = 8;
 /// A refinement of an error that is too large reduces it to this part of the bound, or at least by this factor.
 const REDUCED: f64 = 0.1;
 
+/// If such a step does not help, the next one reduces the residual by this factor more: with a large κ a residual may
+/// fall a long way before the error does. No step reduces it by more than [`DEEPEST`].
+const DEEPER: f64 = 1e-2;
+const DEEPEST: f64 = 1e-6;
+
 /// A first residual below this fraction of the displacements that it was formed from may be rounding: what is left of
 /// the loads after large parts of S̃⁺ have cancelled. The judge looks before the iteration tries to reduce it.
 const SUSPICIOUS: f64 = 1e-9;
@@ -142,7 +147,7 @@ impl LinearMethod {
                 // Rounding has made P_2 useless (elements a thousand times as long as high): the plain iteration begins
                 // at λ₀.
                 at.lambda.set(0.0)?;
-                at.balance(&self.dual())?;
+                at.begin(&self.dual())?;
             } else {
                 return Ok(all);
             }
@@ -213,6 +218,7 @@ impl LinearMethod {
     /// holding, are not a solution, whatever the status of the iteration. An error that is too large in the energy norm
     /// is refined first. Collective.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
+        let mut part = REDUCED;
         for step in 0.. {
             if !solution.status.converged() {
                 break;
@@ -222,7 +228,7 @@ impl LinearMethod {
             let estimate = self.energy_error(&solution, bound)?;
             let mut error = estimate.most;
             if error > bound && step < STEPS {
-                let reduction = (REDUCED * bound / error).clamp(1e-6, REDUCED);
+                let reduction = (part * bound / error).clamp(DEEPEST, REDUCED);
                 let refined = self.refined(&solution, reduction)?;
                 if let Some(better) = refined.better {
                     solution = better;
@@ -232,6 +238,10 @@ impl LinearMethod {
                 // bound, which is too large by the condition number.
                 if let Some(correction) = refined.correction {
                     error = error.min(estimate.least.max(correction));
+                    if error > bound && reduction > DEEPEST {
+                        part *= DEEPER;
+                        continue;
+                    }
                 }
             }
             solution.kkt.error = Some(solution.left.relative(error));
@@ -265,7 +275,7 @@ impl LinearMethod {
         dual.natural
             .check_held(&self.problem, &dual.stiffness, &loads.kernel)?;
         let at = Iterate::new(&dual, loads)?;
-        at.balance(&dual)?;
+        at.begin(&dual)?;
         Ok(at)
     }
 }

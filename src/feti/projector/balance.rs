@@ -2,11 +2,17 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::gtg::Side;
+use super::gtg::{Gtg, Side};
 use super::natural::NaturalCoarse;
+use crate::feti::settings::ProjectorKind;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
+
+/// Forces so many times as large as the smallest ones that balance the loads, and larger than the λ that they are added
+/// to, are no start: the iteration would have to take them back, with the digits that they leave it
+/// (docs/theory.md, section 6).
+const VAST: f64 = 1e3;
 
 /// The work of the loads on the kernels: e = Rᵀ g, and the size of the terms that may cancel in it.
 #[derive(Debug, Clone, Default)]
@@ -49,6 +55,28 @@ impl NaturalCoarse {
         load: &KernelLoad,
         lambda: &PetscVec,
     ) -> Result<()> {
+        self.balance_with(comm, load, lambda, false)
+    }
+
+    /// The same, to begin an iteration with: where forces would be [`VAST`], Q = I takes the place of Q = M⁻¹.
+    /// Collective.
+    pub fn begin(
+        &self,
+        comm: &SimpleCommunicator,
+        load: &KernelLoad,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let differ = self.projector == ProjectorKind::Preconditioner;
+        self.balance_with(comm, load, lambda, differ)
+    }
+
+    fn balance_with(
+        &self,
+        comm: &SimpleCommunicator,
+        load: &KernelLoad,
+        lambda: &PetscVec,
+        choose: bool,
+    ) -> Result<()> {
         let Some(solver) = &self.gtg else {
             return Ok(());
         };
@@ -58,10 +86,32 @@ impl NaturalCoarse {
             self.g.add_transpose(&lambda.array()?, &mut c);
             sum_all(comm, &mut c);
             c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
+            let least = choose.then(|| self.least(solver, &c));
             solver.solve(&mut c, Side::Plain)?;
-            self.qg().add(1.0, &c, &mut lambda.array_mut()?);
+            let mut lambda = lambda.array_mut()?;
+            let mut forces = vec![0.0; lambda.len()];
+            self.qg().add(1.0, &c, &mut forces);
+            if let Some(least) = least {
+                let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
+                let mut squares = [square(&forces), square(&least), square(&lambda)];
+                sum_all(comm, &mut squares);
+                let [of, least_of, known] = squares.map(f64::sqrt);
+                if of > VAST * least_of && of > known {
+                    forces = least;
+                }
+            }
+            lambda.iter_mut().zip(&forces).for_each(|(l, f)| *l += f);
         }
         Ok(())
+    }
+
+    /// G (Gᵀ G)⁺ c: the smallest forces that do this work on the motions of the bodies. Collective.
+    fn least(&self, solver: &Gtg, c: &[f64]) -> Vec<f64> {
+        let mut c = c.to_vec();
+        solver.gram.solve(&mut c);
+        let mut forces = vec![0.0; self.g.n()];
+        self.g.add(1.0, &c, &mut forces);
+        forces
     }
 
     /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.

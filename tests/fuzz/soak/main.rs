@@ -68,6 +68,7 @@ fn run(session: &Session, first: u64, seconds: u64, count: u64) -> Result<()> {
             Fate::Refused(why) => ("refused", why),
             Fate::NoSolution(why) => ("no_solution", why),
             Fate::Undecided(why) => ("undecided", why),
+            Fate::NotConverged(why) => ("not_converged", why),
             Fate::Wrong(why) => ("wrong", why),
         };
         if session.rank() == 0 {
