@@ -14,6 +14,7 @@ mod counts;
 mod examples;
 mod gallery;
 mod guided;
+mod hidden_motions;
 mod input;
 mod input_bodies;
 mod instances;

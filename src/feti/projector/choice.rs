@@ -5,7 +5,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
-use super::gram::{Gram, Motion};
+use super::gram::{Gram, Motion, Shape};
 use super::natural::NaturalCoarse;
 use super::raised::{Row, MOST};
 use crate::parallel::exchange::{gather_all, highest, sum_all};
@@ -13,6 +13,13 @@ use crate::parallel::exchange::{gather_all, highest, sum_all};
 /// Motions on which the rows do more work than this, relative to the largest that they could do, are not known well
 /// enough: P would lose digits. As a rule it is some times rounding.
 const FREE: f64 = 1e-13;
+
+/// Largest work of the rows, in the same measure, on a motion that they do not hold but no pivot shows: the root of
+/// what a regular matrix has there, and more than what is left of a motion after the solves that find it.
+const NO_WORK: f64 = 1e-8;
+
+/// Largest number of such motions that are looked for.
+const MOST_HIDDEN: usize = 8;
 
 impl NaturalCoarse {
     /// GᵀG of these rows, factored. Collective.
@@ -40,15 +47,29 @@ impl NaturalCoarse {
                     .filter(|raised| self.work(comm, rows, raised.taken()) <= FREE),
                 _ => None,
             };
-            let gram = raised.unwrap_or_else(|| {
-                let way = (&shape.pattern, shape.team().map(|t| &**t));
-                let mut numbers = self.numbers.borrow_mut();
-                let product = numbers.renewed(comm, way, &self.all, chosen);
-                Gram::new(shape, product)
-            });
+            let gram = raised.unwrap_or_else(|| self.factored(comm, shape, chosen));
             *last = Some((chosen.to_vec(), Rc::new(gram)));
         }
         last.as_ref().expect("it was set").1.clone()
+    }
+
+    /// GᵀG of these rows, factored anew; motions that no pivot shows are left out, too. Collective.
+    fn factored(&self, comm: &SimpleCommunicator, shape: &Shape, chosen: &[bool]) -> Gram {
+        let way = (&shape.pattern, shape.team().map(|t| &**t));
+        let mut hidden: Vec<u32> = Vec::new();
+        loop {
+            let mut numbers = self.numbers.borrow_mut();
+            let product = numbers.renewed(comm, way, &self.all, chosen);
+            let gram = Gram::without(shape, product, &hidden);
+            let Some((column, motion)) = gram.weakest().filter(|_| hidden.len() < MOST_HIDDEN)
+            else {
+                return gram;
+            };
+            if self.work(comm, chosen, &[motion]) > NO_WORK {
+                return gram;
+            }
+            hidden.push(column);
+        }
     }
 
     /// The largest work of these rows on one of these motions, relative to the largest that it could be. Collective.

@@ -26,7 +26,7 @@ pub const FEW: usize = 150;
 const NOTHING: f64 = 1e-13;
 
 /// … and of solves with many columns.
-const NOTHING_SOLVED: f64 = 1e-10;
+pub(super) const NOTHING_SOLVED: f64 = 1e-10;
 
 /// The smallest pivot of a weighted product, relative to its diagonal entry. Below it a factor has less than three
 /// digits.
@@ -41,7 +41,7 @@ pub struct Motion(pub Vec<(u32, f64)>);
 
 impl Motion {
     /// The motion with these coefficients, without those below `least` relative to the largest.
-    fn above(least: f64, entries: impl Iterator<Item = (u32, f64)> + Clone) -> Motion {
+    pub(super) fn above(least: f64, entries: impl Iterator<Item = (u32, f64)> + Clone) -> Motion {
         let largest = entries.clone().fold(0.0f64, |a, e| a.max(e.1.abs()));
         Motion(entries.filter(|e| e.1.abs() > least * largest).collect())
     }
@@ -167,9 +167,15 @@ impl Gram {
     /// Factors `a`, a GᵀG of this shape. A rank needs the rows of its subtrees and of the top, and all of few columns.
     /// Collective.
     pub fn new(shape: &Shape, a: Csr) -> Gram {
+        Gram::without(shape, a, &[])
+    }
+
+    /// The same, without these columns as well, each of which depends on the others though its pivot does not show it.
+    /// They are many. Collective.
+    pub fn without(shape: &Shape, a: Csr, hidden: &[u32]) -> Gram {
         match &shape.team {
             None => Gram::few(&a),
-            Some(team) => Gram::many(&shape.pattern, team, a),
+            Some(team) => Gram::many(&shape.pattern, team, a, hidden),
         }
     }
 
@@ -194,7 +200,7 @@ impl Gram {
         }
     }
 
-    fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr) -> Gram {
+    fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
         let mut scale = scale_to_unit_diagonal(&mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, team, &a, &scale);
@@ -204,16 +210,24 @@ impl Gram {
             }
         }
         sum_all(team.comm(), &mut scale);
-        for &(k, _) in &alone {
+        let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
+        for &k in alone.iter().map(|m| &m.0).chain(hidden) {
             a.set_diagonal(k as usize, OUT);
         }
         let (factor, together) = SharedCholesky::semidefinite(&a, team.clone(), DEPENDENT);
         let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
-        dropped.extend(&together);
+        dropped.extend(together.iter().chain(hidden));
         dropped.sort_unstable();
         let vectors = factor.null_vectors(&together).into_iter();
         alone.extend(together.iter().zip(vectors).map(|(&k, v)| {
             let v = v.iter().map(|(c, v)| (*c, v * scale[*c as usize]));
+            (k, Motion::above(NOTHING_SOLVED, v))
+        }));
+        alone.extend(hidden.iter().zip(minus).map(|(&k, mut v)| {
+            factor.solve(&mut v); /*                            v ← −A_JJ⁻¹ A_Jk, v_k = 1 */
+            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
+            v[k as usize] = 1.0;
+            let v = (0..).zip(v.iter().zip(&scale).map(|(v, s)| v * s));
             (k, Motion::above(NOTHING_SOLVED, v))
         }));
         alone.sort_by_key(|m| m.0);
@@ -289,6 +303,19 @@ impl Gram {
     pub fn is_sparse(&self) -> bool {
         !matches!(self.factor, Factor::Dense(_))
     }
+}
+
+/// Column `k` of −A, without its diagonal entry. A rank has the rows that it tells the others about. Collective.
+fn minus_column(team: &Team, a: &Csr, k: u32) -> Vec<f64> {
+    let mut out = vec![0.0; a.n()];
+    if team.tells(k) {
+        let (col, val) = a.row(k as usize);
+        for (&j, &v) in col.iter().zip(val).filter(|e| *e.0 != k) {
+            out[j as usize] = -v;
+        }
+    }
+    sum_all(team.comm(), &mut out);
+    out
 }
 
 /// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit

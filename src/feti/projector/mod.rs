@@ -8,6 +8,7 @@ pub mod gram;
 pub mod graph;
 pub mod gtg;
 pub mod held;
+mod hidden;
 mod motions;
 pub mod natural;
 mod numbers;

@@ -1,0 +1,82 @@
+//! Motions that nothing holds and that no pivot of a sparse factor shows.
+//!
+//! Many columns are factored without a choice of pivots. The last pivot of a singular matrix is then rounding over the
+//! square of the last entry of its null vector, and no small number if that entry is small: a stack of bodies that
+//! slides under a last one which it lifts a little. Inverse iteration finds the vector; mostly a single solve tells
+//! that there is none.
+
+use mpi::traits::Communicator;
+
+use super::gram::{Factor, Gram, Motion, NOTHING_SOLVED};
+use super::refined::probe;
+use crate::parallel::exchange::sum_all;
+
+/// Steps of inverse iteration.
+const STEPS: usize = 3;
+
+/// If a step magnifies by less than the inverse of this, the matrix is regular: of a null vector that is magnified by
+/// 1e13 and more the start would have less than 1e-6.
+const REGULAR: f64 = 1e-7;
+
+/// The smallest eigenvalue of the matrix, scaled to a unit diagonal, that may be rounding. Slender stacks of bodies
+/// have small ones of their own, so that the motion has to be tried on the rows.
+const ROUNDING: f64 = 1e-13;
+
+impl Gram {
+    /// The motion on which a sparse factor of all columns that it keeps is weakest, and its column that is best left
+    /// out; `None` if the factor is regular. Collective.
+    pub fn weakest(&self) -> Option<(u32, Motion)> {
+        let Factor::Sparse { factor, scale } = &self.factor else {
+            return None;
+        };
+        let team = factor.team();
+        let (comm, first) = (team.comm(), team.comm().rank() == 0);
+        let kept = |c: u32| f64::from(u8::from(scale[c as usize] > 0.0));
+        let start = |c: u32| kept(c) * probe(c as usize);
+        let mut own: Vec<f64> = team.own_dofs().map(start).collect();
+        let mut top: Vec<f64> = team.top_dofs().map(start).collect();
+        let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
+        let norm = |own: &[f64], top: &[f64]| {
+            let mut sum = [square(own)];
+            sum_all(comm, &mut sum);
+            (sum[0] + square(top)).sqrt()
+        };
+        let (mut before, mut least) = (norm(&own, &top), f64::INFINITY);
+        for _ in 0..STEPS {
+            // Shares of the top are summed over the ranks.
+            if !first {
+                top.fill(0.0);
+            }
+            factor.solve_shares(&mut own, &mut top); /*                  x ← A⁺ x / ‖x‖ */
+            let after = norm(&own, &top);
+            least = least.min(before / after);
+            // What is not a number is not regular, and no motion.
+            if least > REGULAR || !after.is_finite() {
+                return None;
+            }
+            own.iter_mut().chain(&mut top).for_each(|x| *x /= after);
+            before = 1.0;
+        }
+        if least > ROUNDING {
+            return None;
+        }
+        let mut x = vec![0.0; self.n()];
+        team.own_dofs()
+            .zip(&own)
+            .for_each(|(c, v)| x[c as usize] = *v);
+        if first {
+            team.top_dofs()
+                .zip(&top)
+                .for_each(|(c, v)| x[c as usize] = *v);
+        }
+        sum_all(comm, &mut x);
+        let column =
+            (0..self.n()).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()).then(j.cmp(&i)))?;
+        let entries = (0..).zip(x.iter().zip(scale).map(|(x, s)| x * s));
+        Some((column as u32, Motion::above(NOTHING_SOLVED, entries)))
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/projector/hidden.rs"]
+mod tests;
