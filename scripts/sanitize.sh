@@ -7,7 +7,7 @@
 #   valgrind  C programs with the plug-in and the C API, on one rank and on several
 #   address   AddressSanitizer and LeakSanitizer: the program on every example
 #   thread    ThreadSanitizer: the program with several threads
-#   miri      Miri: unit tests of what calls no foreign function
+#   miri      Miri: the unit tests that tests/sanitize/miri.txt names, which call no foreign function
 #
 # Suppressions are in tests/sanitize, of MPI's own alone. Exit code 0: nothing was found; 1: something was, the names of
 # the logs are printed; 3: something is missing that could not be installed. It takes an hour.
@@ -161,14 +161,27 @@ thread() {
     unset TSAN_OPTIONS
 }
 
+# Runs of tests/sanitize/miri.txt. Miri knows no inline assembly. That of faer is for processors with AVX2: without them
+# in the target it takes its loops in Rust.
 miri() {
     nightly rust-src miri
-    # Miri knows neither foreign functions (PETSc, MPI, BLAS) nor inline assembly, which faer has: few tests are left.
-    for tests in linalg::vec3 mesh::kind; do
-        run "miri $tests" 'Undefined Behavior|FAILED' \
-            env CARGO_TARGET_DIR="$out/miri" MIRIFLAGS="-Zmiri-disable-isolation" \
-            cargo +nightly miri test --lib --no-default-features -- "$tests"
-    done
+    local name="" filters=()
+    while read -r word _; do
+        case $word in
+            "" | \#*) ;;
+            \[*) miri_run "$name" "${filters[@]}"; name=${word//[\[\]]/} filters=() ;;
+            -*) filters+=(--skip "${word#-}") ;;
+            *) filters+=("$word") ;;
+        esac
+    done < <(cat "$supp/miri.txt"; echo "[]")
+}
+
+# miri_run NAME FILTER...: unit tests whose names have one of the filters.
+miri_run() {
+    [ -n "$1" ] || return 0
+    run "miri $1" 'Undefined Behavior|FAILED| 0 passed' \
+        env CARGO_TARGET_DIR="$out/miri" MIRIFLAGS="-Zmiri-disable-isolation" RUSTFLAGS="-Ctarget-cpu=x86-64" \
+        cargo +nightly miri test --lib -- "${@:2}"
 }
 
 for part in "${parts[@]}"; do
