@@ -237,6 +237,12 @@ impl FetiFeti {
         self.method.deflated()
     }
 
+    /// (The largest eigenvalue that iterations have seen and `auto` would have deflated with fewer bodies, the
+    /// eigenvalue from which deflation is worth its cost); `None` if there was none.
+    pub fn deflation_declined(&self) -> Option<(f64, f64)> {
+        self.method.deflation_declined()
+    }
+
     /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. If a bound is asked for
     /// and nothing has been deflated yet, deflation comes first. Collective.
     ///

@@ -9,7 +9,7 @@ use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{self, max_memory, Options, Session};
-use crate::report::json::adaptive::{Adaptive, Deflation};
+use crate::report::json::adaptive::{Adaptive, Declined, Deflation};
 use crate::report::json::contact::ContactReport;
 use crate::report::json::{self, NaturalCoarse, Operators, SolveReport};
 use crate::scene::Scene;
@@ -173,9 +173,14 @@ pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
         constraints: facts.adaptive_constraints.clone(),
         constraint_seconds: facts.adaptive_seconds,
         deflation: deflation(solver)?,
+        declined: solver.deflation_declined().map(|(seen, from)| Declined {
+            seen,
+            worth_from: from.is_finite().then_some(from),
+        }),
     };
     let added = out.constraints.iter().any(|n| *n > 0);
-    Ok((added || out.deflation.is_some()).then_some(out))
+    let deflated = out.deflation.is_some() || out.declined.is_some();
+    Ok((added || deflated).then_some(out))
 }
 
 fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {

@@ -1,6 +1,6 @@
 //! The linear method, set up for one problem. Only Z^k, the set of rows that hold, may change.
 
-use std::cell::{Cell, Ref};
+use std::cell::{Cell, OnceCell, Ref};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -31,6 +31,10 @@ pub struct LinearMethod {
     pub(crate) length: Cell<f64>,
     /// The largest ratio of coefficients inside a body.
     pub(crate) varies: f64,
+    /// The eigenvalue from which deflation is worth its cost, once it is asked for, and the largest one below it that
+    /// an iteration has seen and `auto` would deflate with fewer bodies.
+    pub(super) worth: OnceCell<f64>,
+    pub(super) declined: Cell<f64>,
     /// What is kept of the pattern of each local subdomain.
     pub(super) analysed: Vec<Option<Arc<Analysed>>>,
 }

@@ -1,6 +1,6 @@
 //! The set-up of the linear method: from substructures to operators and a Krylov method.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -142,6 +142,8 @@ impl LinearMethod {
             },
             length: Cell::new(0.0),
             varies,
+            worth: OnceCell::new(),
+            declined: Cell::new(0.0),
             analysed,
         })
     }

@@ -52,6 +52,11 @@ impl Dense {
         &self.data[j * self.rows..(j + 1) * self.rows]
     }
 
+    /// Whether column `j` vanishes.
+    pub fn is_zero(&self, j: usize) -> bool {
+        self.col(j).iter().all(|x| *x == 0.0)
+    }
+
     /// Column `j`, to write.
     pub fn col_mut(&mut self, j: usize) -> &mut [f64] {
         &mut self.data[j * self.rows..(j + 1) * self.rows]

@@ -1,7 +1,9 @@
 //! Displacements of the sides that may touch, known to every rank.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
 
 use super::checked::Scene;
 use crate::parallel::exchange::gather_all;
@@ -12,7 +14,7 @@ use crate::substructures::{BodyNode, RowSource, Subdomain};
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Displaced {
     /// By body.
-    nodes: HashMap<usize, Arc<HashMap<usize, [f64; 3]>>>,
+    nodes: FxHashMap<usize, Arc<FxHashMap<usize, [f64; 3]>>>,
 }
 
 /// Words per node: body, node, three components.
@@ -56,7 +58,7 @@ impl Displaced {
         }
         let received = gather_all(session.comm(), &words);
         let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
-        let mut nodes: HashMap<usize, HashMap<usize, [f64; 3]>> = HashMap::new();
+        let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
         for w in each {
             let [body, node] = [w[0], w[1]].map(|k| k as usize);
             let u = [2, 3, 4].map(|k| f64::from_bits(w[k]));
@@ -65,7 +67,7 @@ impl Displaced {
         Displaced::new(nodes)
     }
 
-    fn new(nodes: HashMap<usize, HashMap<usize, [f64; 3]>>) -> Displaced {
+    fn new(nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>>) -> Displaced {
         let shared = nodes.into_iter().map(|(body, u)| (body, Arc::new(u)));
         Displaced {
             nodes: shared.collect(),
@@ -74,7 +76,7 @@ impl Displaced {
 
     /// From the displacements by body and node.
     pub fn of_nodes(list: &[(usize, usize, [f64; 3])]) -> Displaced {
-        let mut nodes: HashMap<usize, HashMap<usize, [f64; 3]>> = HashMap::new();
+        let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
         for &(body, node, u) in list {
             nodes.entry(body).or_default().insert(node, u);
         }
@@ -98,13 +100,13 @@ impl Displaced {
     }
 
     /// The displacements of a body by node.
-    pub fn of(&self, body: usize) -> Option<Arc<HashMap<usize, [f64; 3]>>> {
+    pub fn of(&self, body: usize) -> Option<Arc<FxHashMap<usize, [f64; 3]>>> {
         self.nodes.get(&body).cloned()
     }
 
     /// These displacements, counted from earlier ones.
     pub fn since(&self, before: &Displaced) -> Displaced {
-        let of_body = |(&body, u): (&usize, &Arc<HashMap<usize, [f64; 3]>>)| {
+        let of_body = |(&body, u): (&usize, &Arc<FxHashMap<usize, [f64; 3]>>)| {
             let each = u.iter().map(|(&node, u)| {
                 let from = before.at(BodyNode { body, node });
                 (node, [0, 1, 2].map(|d| u[d] - from[d]))
@@ -133,8 +135,8 @@ impl Scene {
     }
 
     /// The nodes that may touch, by body.
-    fn nodes_that_may_touch(&self) -> HashMap<usize, BTreeSet<usize>> {
-        let mut out: HashMap<usize, BTreeSet<usize>> = HashMap::new();
+    fn nodes_that_may_touch(&self) -> FxHashMap<usize, BTreeSet<usize>> {
+        let mut out: FxHashMap<usize, BTreeSet<usize>> = FxHashMap::default();
         if self.is_renewed() {
             // Any of their sides may come to touch.
             let all = self.bodies.iter().enumerate();

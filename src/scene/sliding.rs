@@ -1,7 +1,7 @@
 //! How far the sides of a contact slide along each other, against the size of their faces, and how far faces turn:
 //! both are small where the geometry of the undeformed bodies may stand for that of the deformed ones.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::checked::Scene;
 use super::displaced::Displaced;
@@ -38,13 +38,13 @@ impl Sliding {
 pub(crate) struct Sliders<'a> {
     scene: &'a Scene,
     /// The faces of every side that may touch, by their corners in order.
-    faces: HashMap<(usize, usize), Vec<Vec<usize>>>,
+    faces: FxHashMap<(usize, usize), Vec<Vec<usize>>>,
     /// The size of the faces at every node of these sides.
-    sizes: HashMap<BodyNode, f64>,
+    sizes: FxHashMap<BodyNode, f64>,
     /// How far every obstacle has moved.
     motions: Vec<[f64; 3]>,
     /// The weights of nodes in rows between sides whose nodes do not match.
-    mortar: HashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
+    mortar: FxHashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
 }
 
 impl Scene {
@@ -73,7 +73,7 @@ impl<'a> Sliders<'a> {
                 false => way,
             }
         };
-        let (mut faces, mut sizes) = (HashMap::new(), HashMap::new());
+        let (mut faces, mut sizes) = (FxHashMap::default(), FxHashMap::default());
         for (body, side) in scene.sides_that_may_touch() {
             let spec = &scene.bodies[body].spec;
             let mut outlines = Vec::new();
@@ -103,7 +103,7 @@ impl<'a> Sliders<'a> {
     /// The motion since the displacements were zero, of rows that come from one interface or obstacle.
     pub fn of(&self, rows: &[SolvedRow], u: &Displaced) -> Sliding {
         let mut out = Sliding::default();
-        let mut touching: HashSet<BodyNode> = HashSet::new();
+        let mut touching: FxHashSet<BodyNode> = FxHashSet::default();
         let Some(source) = rows.first().map(|r| r.label.source) else {
             return out;
         };
@@ -119,7 +119,7 @@ impl<'a> Sliders<'a> {
             out.over_face = out.over_face.max(slid / size);
             touching.extend(members.into_iter().flatten());
         }
-        let bodies: HashSet<usize> = touching.iter().map(|m| m.body).collect();
+        let bodies: FxHashSet<usize> = touching.iter().map(|m| m.body).collect();
         for body in bodies {
             let side = self.scene.side_of(source, body);
             let faces = side.and_then(|side| self.faces.get(&(body, side)));

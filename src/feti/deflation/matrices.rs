@@ -11,6 +11,7 @@ use super::sparse::{self, Sparse};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
 use crate::feti::projector::sweep::{self, Column};
+use crate::feti::settings::ProjectorKind;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
@@ -89,8 +90,13 @@ impl Matrices {
             for c in 0..k {
                 natural.solve_gtg(x.col_mut(c))?;
             }
-            let around = |b: usize| graph.around(&graph.near[b]);
-            let columns = sweep::kernel_columns(natural.qg(), start, around);
+            // Q = M⁻¹ leads to the rows of neighbours.
+            let wide = natural.projector == ProjectorKind::Preconditioner;
+            let reach = |b: usize| match wide {
+                true => graph.around(&graph.near[b]),
+                false => near(b),
+            };
+            let columns = sweep::kernel_columns(natural.qg(), start, reach);
             fqg = Panels::new(&sweep::images(&like, graph, &columns, f)?);
             qg = Panels::new(&columns);
         }

@@ -23,6 +23,7 @@ pub mod pencil;
 pub mod search;
 pub mod sparse;
 pub mod whole;
+pub mod worth;
 
 use std::time::Instant;
 

@@ -1,8 +1,9 @@
 //! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
 use std::ops::Range;
+
+use rustc_hash::FxHashMap;
 
 use super::coupled::Coupled;
 use super::{dependent, scaling};
@@ -306,7 +307,7 @@ pub(crate) fn collect(
 
 /// The weights of B_D from sums over copies.
 fn even(sums: &[f64], bodies: &[u32], copies: &[Vec<Copy>]) -> Vec<f64> {
-    let mut fewest: HashMap<u32, usize> = HashMap::new();
+    let mut fewest: FxHashMap<u32, usize> = FxHashMap::default();
     for (body, list) in bodies.iter().zip(copies) {
         let n = fewest.entry(*body).or_insert(list.len());
         *n = list.len().min(*n);

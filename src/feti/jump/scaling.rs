@@ -39,7 +39,11 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     let (m, n) = (b.rows, b.cols);
     let rows: Vec<usize> = (0..m).filter(|&r| active[r]).collect();
     let mut out = Dense::zeros(m, n);
-    if rows.is_empty() {
+    if let [] | [_] = rows[..] {
+        if let [r] = rows[..] {
+            let row = single(b, r, weights);
+            (0..n).zip(row).for_each(|(j, v)| out.set(r, j, v));
+        }
         return out;
     }
     let held = faer::Mat::from_fn(rows.len(), n, |i, j| b.get(rows[i], j));
@@ -69,6 +73,19 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
         }
     }
     out
+}
+
+/// B_D of a single row: D⁻¹bᵀ / (b D⁻¹ bᵀ), zero for a row of zeros. Nothing cancels in it.
+fn single(b: &Dense, r: usize, weights: &[f64]) -> Vec<f64> {
+    // Weights relative to the smallest one: their inverses are at most one.
+    let least = weights.iter().fold(f64::INFINITY, |a, d| a.min(*d));
+    let terms = (0..b.cols).map(|j| b.get(r, j) * (least / weights[j]));
+    let terms: Vec<f64> = terms.collect();
+    let sum: f64 = (0..b.cols).map(|j| b.get(r, j) * terms[j]).sum();
+    match sum > 0.0 {
+        true => terms.iter().map(|t| t / sum).collect(),
+        false => terms,
+    }
 }
 
 /// An orthonormal basis of range B for a matrix of a few rows.

@@ -1,10 +1,11 @@
 //! The spectrum and the bound on it: the conditions for deflation.
 
 use super::eigenvalues;
-use super::iterate::Watch;
-use crate::feti::deflation::{self, Cost, Deflation};
+use super::iterate::{Run, Watch};
+use crate::feti::deflation::{self, worth, Cost, Deflation};
 use crate::feti::method::LinearMethod;
-use crate::feti::settings::Adaptive;
+use crate::feti::projector::gram::FEW;
+use crate::feti::settings::{Adaptive, ProjectorKind};
 use crate::feti::spectrum::Spectrum;
 use crate::Result;
 
@@ -22,7 +23,10 @@ impl LinearMethod {
     pub(super) fn watch(&self) -> Option<Watch> {
         let adaptive = self.settings.adaptive;
         let limit = match &*self.system.deflation() {
-            None => deflation::watch(adaptive, self.varies),
+            None => match adaptive {
+                Adaptive::Auto => self.usual_limit().map(|limit| limit.max(self.worth())),
+                _ => self.usual_limit(),
+            },
             Some(d) if d.cost.given_up || d.exhausted => None,
             Some(_) => match adaptive {
                 Adaptive::Below(tau) => Some(KEPT * tau),
@@ -34,6 +38,46 @@ impl LinearMethod {
             _ => WATCHED_FROM_IN_STEPS,
         };
         limit.map(|limit| Watch { limit, from })
+    }
+
+    /// The eigenvalue at which an iteration is broken off where deflation costs little.
+    fn usual_limit(&self) -> Option<f64> {
+        deflation::watch(self.settings.adaptive, self.varies)
+    }
+
+    /// The eigenvalue from which deflation is worth its cost. Collective when it is first asked for.
+    fn worth(&self) -> f64 {
+        *self.worth.get_or_init(|| {
+            let dual = self.dual();
+            let natural = &dual.natural;
+            if natural.r <= FEW {
+                return 0.0;
+            }
+            let graph = natural.graph(&self.problem, &dual.stiffness);
+            let wide = natural.projector == ProjectorKind::Preconditioner;
+            worth::from(graph, &dual.stiffness.space.kernel_start, wide)
+        })
+    }
+
+    /// Notes an eigenvalue that a run has seen, if it would have been deflated with fewer bodies.
+    pub(super) fn note(&self, run: &Run) {
+        let Some(seen) = run.estimate.filter(|_| !self.is_deflated()) else {
+            return;
+        };
+        let declined = self
+            .usual_limit()
+            .is_some_and(|usual| seen.lambda_max > usual);
+        let long = self.watch().is_some_and(|w| run.iterations > w.from);
+        if declined && long && seen.lambda_max <= self.worth() {
+            self.declined.set(self.declined.get().max(seen.lambda_max));
+        }
+    }
+
+    /// (The largest eigenvalue that iterations have seen and `auto` would have deflated with fewer bodies, the
+    /// eigenvalue from which it is worth the cost); `None` if there was none.
+    pub fn deflation_declined(&self) -> Option<(f64, f64)> {
+        let seen = self.declined.get();
+        (seen > 0.0 && !self.is_deflated()).then(|| (seen, self.worth()))
     }
 
     /// Whether the search must come before the iteration: large eigenvalues are expected or a bound is asked for, and

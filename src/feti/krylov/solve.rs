@@ -130,6 +130,7 @@ impl LinearMethod {
             };
             let look = look.as_deref_mut();
             let run = iterate(self, &at.residual.r, &at.lambda, &control, look)?; /* λ ← λ + P x, Pᵀ F P x = Pᵀ r  */
+            self.note(&run);
             let (stopped, seen) = (run.stopped, run.estimate);
             let converged = run.status.converged();
             let again = run.broke_down(PROGRESS) && starts < STARTS;

@@ -181,7 +181,8 @@ impl Preconditioner {
         }
         for (c, out) in outs.iter().enumerate() {
             ghost.clear();
-            for (b, columns) in blocks.iter().zip(columns) {
+            let all = blocks.iter().zip(columns);
+            for (b, columns) in all.filter(|(b, _)| !b.y.is_zero(c)) {
                 columns.add_bd(b.y.col(c), ghost); /*             out ← B_D y      */
             }
             stiffness.sum_scaled(ghost, out)?;

@@ -267,7 +267,7 @@ impl NaturalCoarse {
     }
 
     /// The graph of the bodies. Collective when it is first asked for.
-    pub(super) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
+    pub(crate) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
         self.graph
             .get_or_init(|| BodyGraph::new(problem, stiffness))
     }

@@ -1,6 +1,9 @@
 //! Sparse rows with few columns, such as those of G: one row for every multiplier that this rank owns.
 
+use std::rc::Rc;
+
 use mpi::topology::SimpleCommunicator;
+use rustc_hash::FxHashMap;
 
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{sum_all, Record};
@@ -34,55 +37,113 @@ impl Record for RowEntry {
 }
 
 /// Rows of a matrix with r columns, on the rank that owns them.
+///
+/// Rows with the same columns, such as those of a face between two bodies, are a group. Products go through them group
+/// by group: a group reads its columns once, and a row takes the memory of its values and hardly more.
 #[derive(Debug, Clone, Default)]
 pub struct Rows {
-    start: Vec<usize>,
-    col: Vec<u32>,
-    val: Vec<f64>,
+    layout: Rc<Layout>,
+    /// The values of the rows, group after group.
+    values: Vec<f64>,
+}
+
+/// Where the entries are; matrices that differ in their values share it.
+#[derive(Debug, Default)]
+struct Layout {
+    /// Where the values of each row begin, and its group.
+    row: Vec<(usize, u32)>,
+    groups: Vec<Group>,
+    /// The columns of all groups, those of each increasing.
+    columns: Vec<u32>,
+    /// The rows, group after group.
+    order: Vec<u32>,
+}
+
+/// Rows with the same columns: where they begin in the lists.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group {
+    columns: usize,
+    rows: usize,
+    values: usize,
 }
 
 impl Rows {
     /// From (row, column, value) entries, repeated ones added up.
-    pub fn from_triplets(n: usize, mut entries: Vec<(u32, u32, f64)>) -> Rows {
-        entries.sort_by_key(|e| (e.0, e.1));
-        let mut rows = Rows {
-            start: vec![0; n + 1],
-            ..Rows::default()
-        };
-        for group in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let sum: f64 = group.iter().map(|e| e.2).sum();
-            if sum != 0.0 {
-                rows.start[group[0].0 as usize + 1] += 1;
-                rows.col.push(group[0].1);
-                rows.val.push(sum);
+    pub fn from_triplets(n: usize, entries: Vec<(u32, u32, f64)>) -> Rows {
+        let (start, col, val) = compressed(n, entries);
+        let columns_of = |i: usize| &col[start[i]..start[i + 1]];
+        // Groups are numbered in the order in which they come.
+        let mut layout = Layout::default();
+        let mut number: FxHashMap<&[u32], u32> = FxHashMap::default();
+        let mut sizes: Vec<usize> = Vec::new();
+        for i in 0..n {
+            let columns = columns_of(i);
+            let group = *number.entry(columns).or_insert_with(|| {
+                let begin = layout.columns.len();
+                layout.columns.extend_from_slice(columns);
+                layout.groups.push(Group {
+                    columns: begin,
+                    ..Group::default()
+                });
+                sizes.push(0);
+                sizes.len() as u32 - 1
+            });
+            sizes[group as usize] += 1;
+            layout.row.push((0, group));
+        }
+        let (mut before, mut values) = (0, 0);
+        layout.groups.push(Group {
+            columns: layout.columns.len(),
+            ..Group::default()
+        });
+        for g in 0..layout.groups.len() {
+            (layout.groups[g].rows, layout.groups[g].values) = (before, values);
+            if let Some(size) = sizes.get(g) {
+                before += size;
+                values += size * (layout.groups[g + 1].columns - layout.groups[g].columns);
             }
         }
+        layout.order = vec![0; n];
+        let mut values = vec![0.0; values];
+        let mut next = layout.groups.clone();
         for i in 0..n {
-            rows.start[i + 1] += rows.start[i];
+            let (at, group) = &mut layout.row[i];
+            let next = &mut next[*group as usize];
+            *at = next.values;
+            layout.order[next.rows] = i as u32;
+            let from = start[i]..start[i + 1];
+            values[*at..*at + from.len()].copy_from_slice(&val[from.clone()]);
+            next.rows += 1;
+            next.values += from.len();
         }
-        rows
+        Rows {
+            layout: layout.into(),
+            values,
+        }
     }
 
     /// The entries of row `i`.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.start[i]..self.start[i + 1];
-        range.map(|k| (self.col[k] as usize, self.val[k]))
+        let (columns, values) = self.entries(i);
+        let columns = columns.iter().map(|&c| c as usize);
+        columns.zip(values.iter().copied())
     }
 
     /// The columns and values of row `i`.
     pub fn entries(&self, i: usize) -> (&[u32], &[f64]) {
-        let range = self.start[i]..self.start[i + 1];
-        (&self.col[range.clone()], &self.val[range])
+        let (at, group) = self.layout.row[i];
+        let columns = self.layout.columns_of(group as usize);
+        (columns, &self.values[at..at + columns.len()])
     }
 
-    /// The columns of all entries.
+    /// The columns with entries; some are named several times.
     pub fn columns(&self) -> &[u32] {
-        &self.col
+        &self.layout.columns
     }
 
     /// Number of rows.
     pub fn n(&self) -> usize {
-        self.start.len() - 1
+        self.layout.row.len()
     }
 
     /// Aᵀ B for matrices of r columns whose rows are distributed alike, over the rows that `chosen` selects.
@@ -106,25 +167,93 @@ impl Rows {
         product
     }
 
+    /// The groups that have columns: rows, columns, and values row by row.
+    fn groups(&self) -> impl Iterator<Item = (&[u32], &[u32], &[f64])> + '_ {
+        let all = self.layout.groups.windows(2).enumerate().map(|(g, ends)| {
+            let rows = &self.layout.order[ends[0].rows..ends[1].rows];
+            let values = &self.values[ends[0].values..ends[1].values];
+            (rows, self.layout.columns_of(g), values)
+        });
+        all.filter(|(_, columns, _)| !columns.is_empty())
+    }
+
     /// out ← out + Aᵀ λ, this rank's share.
     pub fn add_transpose(&self, lambda: &[f64], out: &mut [f64]) {
-        for (i, &l) in lambda.iter().enumerate() {
-            self.row(i).for_each(|(c, v)| out[c] += v * l);
+        let mut sums = Vec::new();
+        for (rows, columns, values) in self.groups() {
+            sums.clear();
+            sums.resize(columns.len(), 0.0);
+            for (&i, row) in rows.iter().zip(values.chunks_exact(columns.len())) {
+                let l = lambda[i as usize];
+                sums.iter_mut().zip(row).for_each(|(s, v)| *s += v * l);
+            }
+            let both = columns.iter().zip(&sums);
+            both.for_each(|(&c, s)| out[c as usize] += s);
         }
     }
 
     /// λ ← λ + α A x.
     pub fn add(&self, alpha: f64, x: &[f64], lambda: &mut [f64]) {
-        for (i, l) in lambda.iter_mut().enumerate() {
-            *l += alpha * self.row(i).map(|(c, v)| v * x[c]).sum::<f64>();
+        let mut here = Vec::new();
+        for (rows, columns, values) in self.groups() {
+            here.clear();
+            here.extend(columns.iter().map(|&c| x[c as usize]));
+            for (&i, row) in rows.iter().zip(values.chunks_exact(columns.len())) {
+                let sum: f64 = row.iter().zip(&here).map(|(v, x)| v * x).sum();
+                lambda[i as usize] += alpha * sum;
+            }
         }
     }
 
     /// Row i ← q_i · row i.
     pub fn scale_rows(&mut self, q: &[f64]) {
-        for (i, &qi) in q.iter().enumerate() {
-            let range = self.start[i]..self.start[i + 1];
-            self.val[range].iter_mut().for_each(|v| *v *= qi);
+        let layout = &self.layout;
+        for (g, ends) in layout.groups.windows(2).enumerate() {
+            let columns = layout.columns_of(g).len().max(1);
+            let values = &mut self.values[ends[0].values..ends[1].values];
+            let rows = &layout.order[ends[0].rows..ends[1].rows];
+            for (&i, row) in rows.iter().zip(values.chunks_exact_mut(columns)) {
+                row.iter_mut().for_each(|v| *v *= q[i as usize]);
+            }
         }
     }
+}
+
+impl Layout {
+    fn columns_of(&self, group: usize) -> &[u32] {
+        &self.columns[self.groups[group].columns..self.groups[group + 1].columns]
+    }
+}
+
+/// Entries by row and column: where rows begin, columns, values. Repeated entries are added up, zeros left out.
+fn compressed(n: usize, entries: Vec<(u32, u32, f64)>) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+    // By row, in the order in which they come; the few of a row are then sorted by column.
+    let mut next = vec![0usize; n + 1];
+    entries.iter().for_each(|e| next[e.0 as usize + 1] += 1);
+    for i in 0..n {
+        next[i + 1] += next[i];
+    }
+    let ends = next[1..].to_vec();
+    let mut by_row = vec![(0u32, 0.0f64); entries.len()];
+    for (row, col, value) in entries {
+        let at = &mut next[row as usize];
+        by_row[*at] = (col, value);
+        *at += 1;
+    }
+    let (mut start, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
+    let mut begin = 0;
+    for end in ends {
+        let row = &mut by_row[begin..end];
+        row.sort_by_key(|e| e.0);
+        for group in row.chunk_by(|a, b| a.0 == b.0) {
+            let sum: f64 = group.iter().map(|e| e.1).sum();
+            if sum != 0.0 {
+                col.push(group[0].0);
+                val.push(sum);
+            }
+        }
+        start.push(col.len());
+        begin = end;
+    }
+    (start, col, val)
 }

@@ -134,6 +134,26 @@ impl Scaled {
 
     /// y ← A v for all columns.
     pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense) {
+        // Columns that live near one body are zero on all others, and there are many bodies.
+        let on: Vec<usize> = (0..v.cols).filter(|&c| !v.is_zero(c)).collect();
+        if on.len() == v.cols {
+            return self.apply_all(which, v, y);
+        }
+        y.data.fill(0.0);
+        let mut some = Dense::zeros(v.rows, on.len());
+        for (k, &c) in on.iter().enumerate() {
+            some.col_mut(k).copy_from_slice(v.col(c));
+        }
+        let mut images = Dense::zeros(y.rows, on.len());
+        if !on.is_empty() {
+            self.apply_all(which, &some, &mut images);
+        }
+        for (k, &c) in on.iter().enumerate() {
+            y.col_mut(c).copy_from_slice(images.col(k));
+        }
+    }
+
+    fn apply_all(&self, which: Operator, v: &Dense, y: &mut Dense) {
         match self.turn() {
             None => self.problem.apply(which, v, y, v.cols),
             Some(turn) => {

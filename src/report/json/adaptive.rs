@@ -13,6 +13,34 @@ pub struct Adaptive {
     pub constraint_seconds: f64,
     /// The deflation; absent where nothing was searched for.
     pub deflation: Option<Deflation>,
+    /// Eigenvalues that `auto` has left, because many bodies float and deflation would take longer than the iterations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub declined: Option<Declined>,
+}
+
+/// Eigenvalues that are not deflated because that takes longer than the iterations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Declined {
+    /// The largest one that the iterations have seen.
+    pub seen: f64,
+    /// The eigenvalue from which deflation is worth its cost; absent where it never is.
+    pub worth_from: Option<f64>,
+}
+
+impl Declined {
+    /// One line for a summary.
+    pub fn text(&self) -> String {
+        let worth = match self.worth_from {
+            Some(from) => format!(
+                "with so many floating bodies it costs more than it saves below about {from:.0e}"
+            ),
+            None => "its matrices are dense, and bodies that float are too many for it".into(),
+        };
+        format!(
+            "none of eigenvalues up to {:.3e}: {worth} (-fetifeti_adaptive 10 asks for it)",
+            self.seen
+        )
+    }
 }
 
 /// Deflation of eigenvalues above τ.

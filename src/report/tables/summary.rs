@@ -98,6 +98,9 @@ pub fn solve(r: &SolveReport) -> String {
         if let Some(deflation) = &adaptive.deflation {
             lines.push(("deflation", deflation.text()));
         }
+        if let Some(declined) = &adaptive.declined {
+            lines.push(("deflation", declined.text()));
+        }
     }
     if r.condition.exact.is_some() {
         lines.push(("exact spectrum", spectrum(r.condition.exact)));

@@ -95,10 +95,16 @@ pub(crate) fn lacks_signs(body: &Body, side: usize, nodes: impl Iterator<Item = 
     if body.components == 1 {
         return false;
     }
-    let meant: HashSet<usize> = nodes.collect();
     let signs = |face: &BodyFace| face.kind.is_none_or(mortar::has_positive_integrals);
-    let mut faces = body.spec.faces(side).into_iter();
-    faces.any(|face| !signs(&face) && face.nodes.iter().all(|n| meant.contains(n)))
+    let mut faces = body.spec.faces(side);
+    faces.retain(|face| !signs(face));
+    if faces.is_empty() {
+        return false;
+    }
+    let meant: HashSet<usize> = nodes.collect();
+    faces
+        .iter()
+        .any(|face| face.nodes.iter().all(|n| meant.contains(n)))
 }
 
 /// A side of a body with its faces as the elements see them, and the node of the body for each of its nodes.

@@ -1,6 +1,6 @@
 //! A body as plain data: mesh, coefficients, loads and given values.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 use super::expr::Variables;
@@ -125,7 +125,7 @@ pub struct BodySpec {
     /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
     pub place: [usize; 3],
     /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
-    pub moved: Option<Arc<HashMap<usize, [f64; 3]>>>,
+    pub moved: Option<Arc<FxHashMap<usize, [f64; 3]>>>,
     /// Where it was written ("scene.toml:12: "), or empty.
     pub written: String,
 }

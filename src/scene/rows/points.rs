@@ -8,7 +8,6 @@ use crate::scene::model::profile::Limit;
 use crate::scene::model::steps::Factors;
 use crate::scene::validate::agree;
 use crate::substructures::{BodyNode, RowSource};
-use std::collections::HashMap;
 
 /// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
 #[derive(Debug, Clone, PartialEq)]
@@ -201,27 +200,36 @@ struct Shared {
     node: usize,
 }
 
+/// The number of a node that has none.
+const NONE: u32 = u32::MAX;
+
 /// Groups the shared nodes of all interfaces by position, in order of `block`.
 fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shared>)> {
-    let mut index: HashMap<u64, usize> = HashMap::new();
+    // By body the number of each node; empty for bodies without an interface.
+    let mut number: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
     let mut nodes: Vec<BodyNode> = Vec::new();
     let mut sets = UnionFind::default();
     let mut pairs: Vec<Shared> = Vec::new();
-    let matching = interfaces
-        .iter()
-        .enumerate()
-        .filter(|(_, i)| i.mortar.is_none());
-    for (i, interface) in matching {
+    let all = interfaces.iter().enumerate();
+    for (i, interface) in all.filter(|(_, i)| i.mortar.is_none()) {
+        for body in interface
+            .bodies
+            .into_iter()
+            .filter(|_| !interface.shared.is_empty())
+        {
+            if number[body].is_empty() {
+                number[body] = vec![NONE; bodies[body].mesh().n_nodes()];
+            }
+        }
         for (k, shared) in interface.shared.iter().enumerate() {
             let members = [0, 1].map(|k| {
-                let member = BodyNode {
-                    body: interface.bodies[k],
-                    node: shared.nodes[k],
-                };
-                *index.entry(member.dof(bodies, 0)).or_insert_with(|| {
-                    nodes.push(member);
-                    sets.add()
-                })
+                let (body, node) = (interface.bodies[k], shared.nodes[k]);
+                let known = &mut number[body][node];
+                if *known == NONE {
+                    *known = sets.add() as u32;
+                    nodes.push(BodyNode { body, node });
+                }
+                *known as usize
             });
             sets.join(members[0], members[1]);
             pairs.push(Shared {
@@ -231,17 +239,23 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shar
             });
         }
     }
-    // The members and pairs of each set.
-    let mut found: HashMap<usize, (Vec<BodyNode>, Vec<Shared>)> = HashMap::new();
+    // The members and pairs of each set; the lowest member of a set comes first.
+    let mut place = vec![NONE; nodes.len()];
+    let mut found: Vec<(Vec<BodyNode>, Vec<Shared>)> = Vec::new();
     for (id, member) in nodes.iter().enumerate() {
-        found.entry(sets.find(id)).or_default().0.push(*member);
+        let root = sets.find(id);
+        if root == id {
+            place[id] = found.len() as u32;
+            found.push(Default::default());
+        }
+        found[place[root] as usize].0.push(*member);
     }
     for pair in pairs {
         let root = sets.find(pair.members[0]);
-        found.entry(root).or_default().1.push(pair);
+        found[place[root] as usize].1.push(pair);
     }
     let mut out: Vec<(Point, Vec<Shared>)> = found
-        .into_values()
+        .into_iter()
         .map(|(mut members, mut links)| {
             members.sort_by_key(|m| m.body);
             for pair in &mut links {
