@@ -67,7 +67,7 @@ impl<'a> Augmented<'a> {
             .collect();
         let mut g = natural.all.clone();
         g.scale_rows(&scale);
-        let balance = Rc::new(Balance::new(comm, g.clone(), natural.r));
+        let balance = Rc::new(Balance::new(comm, g.clone(), natural));
         let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
         drop(dual);
         let mut a = Augmented {
@@ -161,7 +161,8 @@ impl Bounded for Augmented<'_> {
         let mut g = self.g.clone();
         let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
         g.scale_rows(&mask);
-        self.face = Some(Balance::new(session.comm(), g, self.balance.n.rows));
+        let dual = self.method.dual();
+        self.face = Some(Balance::new(session.comm(), g, &dual.natural));
         Ok(())
     }
 
@@ -182,9 +183,7 @@ impl Bounded for Augmented<'_> {
         let image = self.image.to_vec()?;
         z.copy_from_slice(&self.scaled(&image));
         face.project(comm, z);
-        let n = &self.balance.n;
-        let mut d = vec![0.0; n.rows];
-        n.add_mul(&c, &mut d);
+        let mut d = self.balance.product(comm, &c);
         face.solve(&mut d);
         face.add(1.0 / self.rho, &d, z);
         Ok(())

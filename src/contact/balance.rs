@@ -2,30 +2,48 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use crate::feti::projector::gram::Gram;
+use crate::feti::projector::gtg::Side;
+use crate::feti::projector::natural::NaturalCoarse;
+use crate::feti::projector::refined::Refined;
 use crate::feti::projector::rows::Rows;
-use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
 
-/// G (this rank's rows) and the factor of N = GᵀG, with dependent columns left out.
+/// G (this rank's rows) and the factor of N = GᵀG, r × r, with dependent columns left out.
 pub struct Balance {
     g: Rows,
-    /// N = Gᵀ G, r × r, the same on every rank.
-    pub n: Dense,
-    factor: Semidefinite,
+    /// Number of columns of G.
+    pub r: usize,
+    factor: Factor,
+}
+
+/// The factor of N, the same on every rank.
+enum Factor {
+    /// Of few columns, with a choice of pivots.
+    Dense(Semidefinite),
+    /// Of many: sparse, in the order of the factor of P, with refinement in place of the choice.
+    Sparse(Box<Refined>),
 }
 
 impl Balance {
-    /// Forms and factors N. Collective.
-    pub fn new(comm: &SimpleCommunicator, g: Rows, r: usize) -> Balance {
-        let n = g.product(comm, &g, r, |_| true);
-        let factor = Semidefinite::new(&n);
-        Balance { g, n, factor }
+    /// Forms and factors N; `natural` has the G of all candidates, of which `g` are multiples of rows. Collective.
+    pub fn new(comm: &SimpleCommunicator, g: Rows, natural: &NaturalCoarse) -> Balance {
+        let r = natural.r;
+        let factor = match natural.shape.as_ref().filter(|s| s.team().is_some()) {
+            Some(shape) => {
+                let n = shape.pattern.product(comm, &g, &g, |_| true);
+                let factor = Gram::new(shape, n.clone());
+                Factor::Sparse(Refined::symmetric(factor, n).into())
+            }
+            None => Factor::Dense(Semidefinite::new(&g.product(comm, &g, r, |_| true))),
+        };
+        Balance { g, r, factor }
     }
 
     /// Gᵀ x. Collective.
     pub fn forces(&self, comm: &SimpleCommunicator, x: &[f64]) -> Vec<f64> {
-        let mut c = vec![0.0; self.n.rows];
+        let mut c = vec![0.0; self.r];
         self.g.add_transpose(x, &mut c);
         sum_all(comm, &mut c);
         c
@@ -33,7 +51,17 @@ impl Balance {
 
     /// c ← N⁺ c.
     pub fn solve(&self, c: &mut [f64]) {
-        self.factor.solve(c);
+        match &self.factor {
+            Factor::Dense(factor) => factor.solve(c),
+            Factor::Sparse(factor) => factor.solve(c, Side::Plain),
+        }
+    }
+
+    /// N c. Collective.
+    pub fn product(&self, comm: &SimpleCommunicator, c: &[f64]) -> Vec<f64> {
+        let mut x = vec![0.0; self.g.n()];
+        self.g.add(1.0, c, &mut x);
+        self.forces(comm, &x)
     }
 
     /// x ← x + α G c.

@@ -62,7 +62,7 @@ pub(super) fn solve(
         Ok((run.finish(&steps, seconds, status)?, steps))
     };
     let mut search = Search::new(method, settings, &state)?;
-    state.mu.resize(search.a.balance.n.rows, 0.0);
+    state.mu.resize(search.a.balance.r, 0.0);
     // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
