@@ -7,48 +7,72 @@
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::graph::BodyGraph;
 use crate::feti::settings::Adaptive;
-use crate::linalg::sorted::distinct;
 
-/// With more rigid motions than this the dense matrices take more than a gigabyte, and minutes.
-const MOST: usize = 4000;
+/// Dense matrices of more rows than this take more than a gigabyte, and minutes.
+const MOST: usize = 10_000;
 
-/// Vectors of a body for each of its rigid motions: coefficients that jump by 10³ from element to element have about so
-/// many eigenvalues above 10.
-const VECTORS: f64 = 1.0;
+/// Vectors of a body: where coefficients jump from element to element there are from one to six.
+const VECTORS: f64 = 5.0;
 
-/// ln(2/ε) of a solve, in the mean over the steps of a contact loop: nearly all of them are loose.
-const REDUCTION: f64 = 7.0;
+/// Expansions of the Krylov spaces of a search.
+const EXPANSIONS: f64 = 20.0;
+
+/// Steps of a contact loop that share the cost of a search.
+const STEPS: f64 = 8.0;
+
+/// ln(2/ε) of a solve: to 1e-6, and in the mean over the steps of a contact loop, of which nearly all are loose.
+const REDUCTION: f64 = 14.5;
+const REDUCTION_IN_STEPS: f64 = 7.0;
 
 /// Number of bodies that are looked at.
 const LOOKED_AT: usize = 64;
 
+/// The kind of problem.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem {
+    /// Whether Q leads to the rows of neighbours.
+    pub wide: bool,
+    /// Whether rows switch, and F W and F Q G are renewed with them.
+    pub contact: bool,
+}
+
 /// The eigenvalue λ from which deflation takes less time than it saves, by the iterations of CG with κ = λ,
 ///
 /// ```text
-///     ½ √λ ln(2/ε) − ½ √(1.5 τ) ln(2/ε)  >  the products with F / 2
+///     ½ √λ ln(2/ε) − ½ √(1.5 τ) ln(2/ε)  >  the products with F and M⁻¹ / 2
 /// ```
 ///
-/// and zero with few motions, where it costs little. `start` has the first rigid motion of each body, `wide` says that
-/// Q leads to the rows of neighbours. The same on every rank.
-pub fn from(graph: &BodyGraph, start: &[usize], wide: bool) -> f64 {
+/// and zero with few motions, where it costs little. `start` has the first rigid motion of each body. The same on every
+/// rank.
+pub fn from(graph: &BodyGraph, start: &[usize], problem: Problem) -> f64 {
     let r = start.last().copied().unwrap_or(0);
     if r <= FEW {
         return 0.0;
     }
-    if r > MOST {
+    if VECTORS * graph.n as f64 + r as f64 > MOST as f64 {
         return f64::INFINITY;
     }
     // Two columns can share a product if neither reaches what is near the other's rows.
-    let rings = if wide { 3 } else { 2 };
-    let motions = |&b: &u32| start[b as usize + 1] - start[b as usize];
+    let rings = if problem.wide { 3 } else { 2 };
     let step = graph.n.div_ceil(LOOKED_AT);
-    let around = (0..graph.n as u32).step_by(step).map(|body| {
-        let ball = (0..rings).fold(vec![body], |ball, _| graph.around(&ball));
-        distinct(ball).iter().map(motions).sum::<usize>()
-    });
-    let products = (1.0 + VECTORS) * around.max().unwrap_or(0) as f64;
-    let usual = (1.5 * Adaptive::USUAL).sqrt();
-    (products / REDUCTION + usual).powi(2)
+    let (mut near, mut bodies, mut motions) = (0, 0, 0);
+    for body in (0..graph.n as u32).step_by(step) {
+        let ball = |rings: usize| (0..rings).fold(vec![body], |ball, _| graph.around(&ball));
+        let around = ball(rings);
+        near = near.max(ball(2).len());
+        bodies = bodies.max(around.len());
+        let of = |&b: &u32| start[b as usize + 1] - start[b as usize];
+        motions = motions.max(around.iter().map(of).sum::<usize>());
+    }
+    // M⁻¹ with a column of each colour in each expansion, and with the vectors; F W and F Q G.
+    let vectors = VECTORS * bodies as f64;
+    let search = EXPANSIONS * near as f64 + vectors;
+    let renewal = vectors + motions as f64;
+    let (products, reduction) = match problem.contact {
+        true => (search / STEPS + renewal, REDUCTION_IN_STEPS),
+        false => (search + renewal, REDUCTION),
+    };
+    (products / reduction + (1.5 * Adaptive::USUAL).sqrt()).powi(2)
 }
 
 #[cfg(test)]

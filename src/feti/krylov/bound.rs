@@ -54,8 +54,11 @@ impl LinearMethod {
                 return 0.0;
             }
             let graph = natural.graph(&self.problem, &dual.stiffness);
-            let wide = natural.projector == ProjectorKind::Preconditioner;
-            worth::from(graph, &dual.stiffness.space.kernel_start, wide)
+            let problem = worth::Problem {
+                wide: natural.projector == ProjectorKind::Preconditioner,
+                contact: self.facts.inequalities > 0,
+            };
+            worth::from(graph, &dual.stiffness.space.kernel_start, problem)
         })
     }
 
