@@ -160,7 +160,26 @@ impl Csr {
         out
     }
 
-    /// The matrix with the given (row, column, value) entries, repeated ones added up.
+    /// The same matrix without entries that are zero.
+    pub fn without_zeros(self) -> Csr {
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for row in self.row_ptr.windows(2) {
+            let entries = self.col[row[0]..row[1]]
+                .iter()
+                .zip(&self.val[row[0]..row[1]]);
+            for (&j, &v) in entries.filter(|e| *e.1 != 0.0) {
+                out.col.push(j);
+                out.val.push(v);
+            }
+            out.row_ptr.push(out.col.len());
+        }
+        out
+    }
+
+    /// The matrix of `n` rows with the given (row, column, value) entries, repeated ones added up.
     ///
     /// Repeated entries are summed in the order in which they are given: the result does not depend on how the sort
     /// treats equal keys.
@@ -214,7 +233,8 @@ fn rows_sorted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
 
 /// Orders the entries by column, then deals them out to rows: each row is then sorted by column.
 fn rows_counted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
-    let mut next = starts(n, entries.iter().map(|e| e.1));
+    let columns = entries.iter().map(|e| e.1 as usize + 1).max().unwrap_or(0);
+    let mut next = starts(columns, entries.iter().map(|e| e.1));
     let mut by_column = vec![0u32; entries.len()];
     for (e, k) in entries.iter().zip(0..) {
         let at = &mut next[e.1 as usize];

@@ -64,7 +64,8 @@ impl LinearMethod {
 
     /// Notes an eigenvalue that a run has seen, if it would have been deflated with fewer bodies.
     pub(super) fn note(&self, run: &Run) {
-        let Some(seen) = run.estimate.filter(|_| !self.is_deflated()) else {
+        let may = self.settings.adaptive == Adaptive::Auto && !self.is_deflated();
+        let Some(seen) = run.estimate.filter(|_| may) else {
             return;
         };
         let declined = self

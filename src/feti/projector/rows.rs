@@ -5,6 +5,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
+use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{sum_all, Record};
 
@@ -70,7 +71,11 @@ struct Group {
 impl Rows {
     /// From (row, column, value) entries, repeated ones added up.
     pub fn from_triplets(n: usize, entries: Vec<(u32, u32, f64)>) -> Rows {
-        let (start, col, val) = compressed(n, entries);
+        let Csr {
+            row_ptr: start,
+            col,
+            val,
+        } = Csr::from_triplets(n, &entries).without_zeros();
         let columns_of = |i: usize| &col[start[i]..start[i + 1]];
         // Groups are numbered in the order in which they come.
         let mut layout = Layout::default();
@@ -223,37 +228,4 @@ impl Layout {
     fn columns_of(&self, group: usize) -> &[u32] {
         &self.columns[self.groups[group].columns..self.groups[group + 1].columns]
     }
-}
-
-/// Entries by row and column: where rows begin, columns, values. Repeated entries are added up, zeros left out.
-fn compressed(n: usize, entries: Vec<(u32, u32, f64)>) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
-    // By row, in the order in which they come; the few of a row are then sorted by column.
-    let mut next = vec![0usize; n + 1];
-    entries.iter().for_each(|e| next[e.0 as usize + 1] += 1);
-    for i in 0..n {
-        next[i + 1] += next[i];
-    }
-    let ends = next[1..].to_vec();
-    let mut by_row = vec![(0u32, 0.0f64); entries.len()];
-    for (row, col, value) in entries {
-        let at = &mut next[row as usize];
-        by_row[*at] = (col, value);
-        *at += 1;
-    }
-    let (mut start, mut col, mut val) = (vec![0], Vec::new(), Vec::new());
-    let mut begin = 0;
-    for end in ends {
-        let row = &mut by_row[begin..end];
-        row.sort_by_key(|e| e.0);
-        for group in row.chunk_by(|a, b| a.0 == b.0) {
-            let sum: f64 = group.iter().map(|e| e.1).sum();
-            if sum != 0.0 {
-                col.push(group[0].0);
-                val.push(sum);
-            }
-        }
-        start.push(col.len());
-        begin = end;
-    }
-    (start, col, val)
 }

@@ -1,7 +1,8 @@
 //! A body as plain data: mesh, coefficients, loads and given values.
 
-use rustc_hash::FxHashMap;
 use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
 
 use super::expr::Variables;
 use super::field::Field;

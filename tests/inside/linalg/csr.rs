@@ -44,3 +44,22 @@ fn sorted_and_counted_rows_are_the_same_and_add_up_what_is_repeated() {
         assert!((0..n).all(|i| a.row(i).0.is_sorted()));
     }
 }
+
+/// Long rows are sorted by counting, short ones by comparison; columns may be more than rows.
+#[test]
+fn rows_may_be_longer_than_columns_are_high() {
+    for n in [2u32, 400] {
+        let entries: Vec<(u32, u32, f64)> = (0..2 * n)
+            .map(|k| (k % 2, (n - 1) - k / 2, f64::from(k) - 1.0))
+            .collect();
+        let a = Csr::from_triplets(2, &entries).without_zeros();
+        assert_eq!(a.row_ptr, [0, n as usize, 2 * n as usize - 1]);
+        for i in 0..2 {
+            let (col, val) = a.row(i);
+            assert!(col.windows(2).all(|c| c[0] < c[1]));
+            for (&j, &v) in col.iter().zip(val) {
+                assert_eq!(v, f64::from(2 * (n - 1 - j)) + i as f64 - 1.0);
+            }
+        }
+    }
+}
