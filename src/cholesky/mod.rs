@@ -15,12 +15,13 @@
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | `null_vector` | what a semidefinite matrix maps to zero |
-//! | [`team`], [`shared`] | the ranks that share a factor, and the factor |
+//! | `deal`, [`team`], [`shared`] | which rank has which front, the ranks that share a factor, and the factor |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
 
 pub mod cover;
+mod deal;
 pub mod dissection;
 pub mod interior;
 pub mod lanes;

@@ -207,6 +207,8 @@ impl<'a> Elimination<'a> {
                 k.get(dof, dof)
             })
             .collect();
+        // The order in which they are added does not depend on who has eliminated them.
+        self.children[f].sort_unstable();
         for &c in &self.children[f] {
             let child = &sym.fronts[c];
             extend_add(

@@ -18,21 +18,33 @@ use super::symbolic::Front;
 const NOTHING: f64 = 1e-13;
 
 impl PartialCholesky {
-    /// The vector v with A v = 0 and v_k = 1 that vanishes on the other dofs that are left out: (dof, entry) for the
-    /// rows of these fronts, by increasing dof. They come in the reverse order of elimination; all fronts above them
-    /// that have rows in common with them are among them.
-    pub(super) fn null_vector<'a>(
-        &self,
-        k: u32,
-        fronts: impl Iterator<Item = &'a Front>,
-    ) -> Vec<(u32, f64)> {
+    /// The vector v with A v = 0 and v_k = 1 that vanishes on the other dofs that are left out: (dof, entry), by
+    /// increasing dof.
+    #[cfg(test)]
+    fn null_vector(&self, k: u32) -> Vec<(u32, f64)> {
         let symbolic = &*self.symbolic;
-        let mut v = vec![0.0; symbolic.n_interior()];
         let start = symbolic.position[k as usize] as usize;
+        let mut v = vec![0.0; symbolic.n_interior()];
         v[start] = 1.0;
-        let mut largest: f64 = 1.0;
+        self.substitute_null(&mut v, start, &mut 1.0, symbolic.fronts.iter().rev());
+        let entries = symbolic.interior.iter().copied().zip(v);
+        let mut out: Vec<(u32, f64)> = entries.filter(|e| e.1 != 0.0).collect();
+        out.sort_by_key(|e| e.0);
+        out
+    }
+
+    /// Completes v, in the order of elimination, on the rows of these fronts before row `start`, which is that of k.
+    /// Parents come before their children, and v is known on the rows below the fronts. `largest` is the largest entry
+    /// so far.
+    pub(super) fn substitute_null<'a>(
+        &self,
+        v: &mut [f64],
+        start: usize,
+        largest: &mut f64,
+        fronts: impl Iterator<Item = &'a Front>,
+    ) {
         let mut rows: Vec<(usize, f64)> = Vec::new();
-        for front in fronts.skip_while(|f| f.start > start) {
+        for front in fronts.filter(|f| f.start <= start) {
             let (width, size) = (front.width(), front.size());
             // The rows of the front on which v does not vanish, those that come last first.
             rows.clear();
@@ -55,17 +67,13 @@ impl PartialCholesky {
                     .map(|&(i, x)| entries[panel::entry(i, j, width, size)] * x)
                     .sum();
                 let x = -sum / entries[panel::diagonal(j, width, size)];
-                if x.abs() > NOTHING * largest {
-                    largest = largest.max(x.abs());
+                if x.abs() > NOTHING * *largest {
+                    *largest = largest.max(x.abs());
                     v[front.start + j] = x;
                     rows.push((j, x));
                 }
             }
         }
-        let entries = symbolic.interior.iter().copied().zip(v);
-        let mut out: Vec<(u32, f64)> = entries.filter(|e| e.1 != 0.0).collect();
-        out.sort_by_key(|e| e.0);
-        out
     }
 }
 

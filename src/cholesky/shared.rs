@@ -1,8 +1,8 @@
 //! The factor of a semidefinite matrix that several ranks share.
 //!
-//! Subtrees of the elimination tree are dealt out to the ranks. What is above them, the top, is eliminated by every
-//! rank, after the ranks have exchanged what their subtrees leave to it. So a rank stores its subtrees and the top, and
-//! a solve takes two sums over the ranks: of what subtrees leave to the rows of the top, and of the solution.
+//! A rank eliminates its fronts and stores their panels. What a front leaves to its parent goes to the rank that has
+//! that, and so does what a solve leaves to the rows below it; the solution comes back the same way. So a solve takes
+//! as many messages, one after the other, as the tree has levels above the subtrees of a rank, up and down.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -14,69 +14,48 @@ use super::team::Team;
 use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{gather_all, sum_all};
+use crate::parallel::post::{posting, received, received_any, Address};
 
 /// The factor of a semidefinite matrix, shared by a team.
 pub struct SharedCholesky {
     team: Rc<Team>,
     /// The panels that this rank has.
     factor: PartialCholesky,
-    /// A number for every row; those of this rank's subtrees and of the top are in use.
+    /// A number for every row; those of this rank and its ghosts are in use.
     work: RefCell<Vec<f64>>,
 }
 
 impl SharedCholesky {
-    /// The factor of `k`, of which a rank needs the rows of its subtrees and of the top, and the dofs that it leaves
-    /// out ([`semidefinite`](PartialCholesky::semidefinite)). Collective.
+    /// The factor of `k`, of which a rank needs the rows that it has, and the dofs that it leaves out
+    /// ([`semidefinite`](PartialCholesky::semidefinite)), increasing. Collective.
     pub fn semidefinite(k: &Csr, team: Rc<Team>, least: f64) -> (SharedCholesky, Vec<u32>) {
         let (comm, symbolic) = (&team.comm, &*team.symbolic);
+        let rows_below = |f: usize| symbolic.fronts[f].below.len();
         let mut elimination = Elimination::new(k, symbolic, symbolic);
-        let mut left: Vec<u32> = Vec::new();
-        let eliminate = |elimination: &mut Elimination<'_>, fronts: &[usize]| {
-            let mut weak = Vec::new();
+        let mut weak: Vec<u32> = Vec::new();
+        posting(comm, team.messages().0, |post| {
             let mut pivots = Pivots::Above(least, &mut weak);
-            for &f in fronts {
-                let done = elimination.front(f, &mut pivots);
-                done.expect("no pivot is too small");
-            }
-            weak
-        };
-        let own = eliminate(&mut elimination, &team.own);
-        if comm.size() > 1 {
-            let mut words = vec![own.len() as u64];
-            words.extend(own.iter().map(|&dof| u64::from(dof)));
-            for &f in &team.roots {
-                let n = symbolic.fronts[f].below.len();
-                let update = elimination.take(f);
-                words.push(f as u64);
-                let columns = (0..n).flat_map(|j| &update[j * n + j..(j + 1) * n]);
-                words.extend(columns.map(|v| v.to_bits()));
-            }
-            let mut updates = Vec::new();
-            for words in gather_all(comm, &words) {
-                let (dofs, mut rest) = words[1..].split_at(words[0] as usize);
-                left.extend(dofs.iter().map(|&dof| dof as u32));
-                while let [f, tail @ ..] = rest {
-                    let n = symbolic.fronts[*f as usize].below.len();
-                    let (values, tail) = tail.split_at(n * (n + 1) / 2);
-                    let mut update = vec![0.0; n * n];
-                    let mut values = values.iter().map(|&v| f64::from_bits(v));
-                    for j in 0..n {
-                        let column = &mut update[j * n + j..(j + 1) * n];
-                        column.iter_mut().zip(&mut values).for_each(|(u, v)| *u = v);
-                    }
-                    updates.push((*f as usize, update));
-                    rest = tail;
+            for run in &team.runs {
+                for &(child, from) in &run.children {
+                    let n = rows_below(child);
+                    let lower = received(comm, from, n * (n + 1) / 2);
+                    elimination.give(child, square(&lower, n));
+                }
+                for &f in &team.own[run.fronts.clone()] {
+                    let done = elimination.front(f, &mut pivots);
+                    done.expect("no pivot is too small");
+                    post.progress();
+                }
+                if let Some(to) = run.parent {
+                    let f = team.last(run);
+                    post.send(to, lower(&elimination.take(f), rows_below(f)));
                 }
             }
-            // The order in which the top adds them does not depend on who has them.
-            updates.sort_by_key(|u| u.0);
-            for (f, update) in updates {
-                elimination.give(f, update);
-            }
-        } else {
-            left = own;
-        }
-        left.extend(eliminate(&mut elimination, &team.top));
+        });
+        let weak: Vec<u64> = weak.iter().map(|&dof| u64::from(dof)).collect();
+        let left = gather_all(comm, &weak).concat();
+        let mut left: Vec<u32> = left.into_iter().map(|dof| dof as u32).collect();
+        left.sort_unstable();
         let factor = PartialCholesky {
             symbolic: team.symbolic.clone(),
             panels: elimination.panels,
@@ -93,51 +72,79 @@ impl SharedCholesky {
             return;
         }
         let mut y = factor.in_order(b);
-        let rows = || team.top_rows.iter().map(|&p| p as usize);
-        let begin: Vec<f64> = rows().map(|p| std::mem::take(&mut y[p])).collect();
-        factor.lower_of(team.fronts(&team.own), &mut y);
-        let mut left: Vec<f64> = rows().map(|p| y[p]).collect();
-        sum_all(&team.comm, &mut left);
-        for (p, (begin, left)) in rows().zip(begin.iter().zip(&left)) {
-            y[p] = begin + left;
-        }
-        factor.lower_of(team.fronts(&team.top), &mut y);
-        factor.upper_of(team.fronts(&team.top).rev(), &mut y);
-        factor.upper_of(team.fronts(&team.own).rev(), &mut y);
-        let others = y.iter_mut().enumerate().filter(|r| !team.tells_row(r.0));
-        others.for_each(|(_, y)| *y = 0.0);
+        let others = |y: &mut [f64]| {
+            let rows = y.iter_mut().enumerate().filter(|r| !team.has_row(r.0));
+            rows.for_each(|(_, y)| *y = 0.0);
+        };
+        others(&mut y);
+        self.up_and_down(&mut y);
+        others(&mut y);
         sum_all(&team.comm, &mut y);
         factor.by_dof(&y, b);
     }
 
-    /// A⁺ b for a vector b that no rank has whole. `own` has the entries of the rows of this rank's subtrees. `top` has
-    /// this rank's share of the entries of the top; the shares of all ranks are summed. Both have the solution on
-    /// return. One sum over the ranks, of the rows of the top. Collective.
-    pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
-        let (team, factor) = (&*self.team, &self.factor);
+    /// x ← A⁺ b for a vector b that no rank has whole: the sum over the ranks of what they have here, of the rows of
+    /// this rank and of its ghosts ([`Team::dofs`]). On return x has the solution there. Collective.
+    pub fn solve_shares(&self, x: &mut [f64]) {
+        let team = &*self.team;
         let mut y = self.work.borrow_mut();
-        let put = |rows: &[u32], values: &[f64], y: &mut [f64]| {
-            rows.iter()
-                .zip(values)
-                .for_each(|(&p, v)| y[p as usize] = *v);
+        let rows = || team.own_rows.iter().chain(&team.ghost_rows);
+        rows().zip(&*x).for_each(|(&p, x)| y[p as usize] = *x);
+        self.up_and_down(&mut y);
+        rows().zip(x).for_each(|(&p, x)| *x = y[p as usize]);
+    }
+
+    /// The solution, in the order of elimination, from the shares of the ranks; rows that are neither this rank's nor
+    /// its ghosts are not touched. Collective.
+    fn up_and_down(&self, y: &mut [f64]) {
+        let (team, factor) = (&*self.team, &self.factor);
+        let comm = &team.comm;
+        let below = |f: usize| team.symbolic.fronts[f].below.iter().map(|&p| p as usize);
+        let arrived = |f: usize, from: Address| {
+            let n = team.symbolic.fronts[f].below.len();
+            clock::timed(Phase::Exchange, || received(comm, from, n))
         };
-        let get = |rows: &[u32], values: &mut [f64], y: &[f64]| {
-            rows.iter()
-                .zip(values)
-                .for_each(|(&p, v)| *v = y[p as usize]);
-        };
-        put(&team.own_rows, own, &mut y);
-        team.top_rows.iter().for_each(|&p| y[p as usize] = 0.0);
-        factor.lower_of(team.fronts(&team.own), &mut y);
-        let left = team.top_rows.iter().map(|&p| y[p as usize]);
-        top.iter_mut().zip(left).for_each(|(t, l)| *t += l);
-        clock::timed(Phase::Reduction, || sum_all(&team.comm, top));
-        put(&team.top_rows, top, &mut y);
-        factor.lower_of(team.fronts(&team.top), &mut y);
-        factor.upper_of(team.fronts(&team.top).rev(), &mut y);
-        factor.upper_of(team.fronts(&team.own).rev(), &mut y);
-        get(&team.own_rows, own, &y);
-        get(&team.top_rows, top, &y);
+        let (up, down) = team.messages();
+        posting(comm, up, |post| {
+            for run in &team.runs {
+                for &(child, from) in &run.children {
+                    let values = arrived(child, from);
+                    below(child).zip(values).for_each(|(p, v)| y[p] += v);
+                }
+                clock::timed(Phase::Natural, || {
+                    for fronts in team.bundles(run) {
+                        factor.lower_of(fronts, y);
+                        post.progress();
+                    }
+                });
+                if let Some(to) = run.parent {
+                    // What is left to the rows of others goes with the message; they are summed on the way.
+                    let mut left = |p: usize| match team.has_row(p) {
+                        true => 0.0,
+                        false => std::mem::take(&mut y[p]),
+                    };
+                    post.send(to, below(team.last(run)).map(&mut left).collect());
+                }
+            }
+        });
+        posting(comm, down, |post| {
+            for run in team.runs.iter().rev() {
+                if let Some(from) = run.parent {
+                    let f = team.last(run);
+                    let values = arrived(f, from);
+                    below(f).zip(values).for_each(|(p, v)| y[p] = v);
+                }
+                clock::timed(Phase::Natural, || {
+                    for fronts in team.bundles(run).rev() {
+                        factor.upper_of(fronts.rev(), y);
+                        post.progress();
+                    }
+                });
+                for &(child, to) in &run.children {
+                    post.send(to, below(child).map(|p| y[p]).collect());
+                }
+            }
+        });
     }
 
     /// The ranks that share it, and who of them has what.
@@ -145,24 +152,46 @@ impl SharedCholesky {
         &self.team
     }
 
-    /// For each of these dofs, which are left out, the vector v with A v = 0 that is one there.
+    /// For each of these dofs, which are left out, the vector v with A v = 0 that is one there, by increasing dof.
     /// Collective.
     pub fn null_vectors(&self, dofs: &[u32]) -> Vec<Vec<(u32, f64)>> {
         let (team, symbolic) = (&*self.team, &*self.factor.symbolic);
-        let mut held = [&team.own[..], &team.top[..]].concat();
-        held.sort_unstable();
-        let position = |dof: u32| symbolic.position[dof as usize] as usize;
         let mut words: Vec<u64> = Vec::new();
+        let mut v = vec![0.0; team.n()];
         for (k, &dof) in dofs.iter().enumerate() {
-            if !team.has_row(position(dof)) {
-                continue;
+            let start = team.row(dof);
+            let mut largest: f64 = 1.0;
+            if team.has_row(start) {
+                v[start] = 1.0;
             }
-            let v = self.factor.null_vector(dof, team.fronts(&held).rev());
-            for (i, value) in v {
-                if team.tells_row(position(i)) {
-                    words.extend([k as u64, u64::from(i), value.to_bits()]);
+            // Messages have the largest entry so far, then rows and entries.
+            posting(&team.comm, team.messages().1, |post| {
+                for run in team.runs.iter().rev() {
+                    if let Some(from) = run.parent {
+                        let values = received_any(&team.comm, from);
+                        largest = largest.max(values[0]);
+                        for pair in values[1..].chunks_exact(2) {
+                            v[pair[0] as usize] = pair[1];
+                        }
+                    }
+                    let fronts = team.fronts(run).rev();
+                    (self.factor).substitute_null(&mut v, start, &mut largest, fronts);
+                    for &(child, to) in &run.children {
+                        let rows = symbolic.fronts[child].below.iter();
+                        let entries = rows.filter(|&&p| v[p as usize] != 0.0);
+                        let pairs = entries.flat_map(|&p| [f64::from(p), v[p as usize]]);
+                        post.send(to, std::iter::once(largest).chain(pairs).collect());
+                    }
+                }
+            });
+            for &p in &team.own_rows {
+                let value = std::mem::take(&mut v[p as usize]);
+                if value != 0.0 {
+                    let dof = symbolic.interior[p as usize];
+                    words.extend([k as u64, u64::from(dof), value.to_bits()]);
                 }
             }
+            team.ghost_rows.iter().for_each(|&p| v[p as usize] = 0.0);
         }
         let mut vectors = vec![Vec::new(); dofs.len()];
         for words in gather_all(&team.comm, &words) {
@@ -176,4 +205,25 @@ impl SharedCholesky {
         }
         vectors
     }
+}
+
+/// The lower triangle of an update of n rows, column by column.
+fn lower(update: &[f64], n: usize) -> Vec<f64> {
+    let mut out = Vec::with_capacity(n * (n + 1) / 2);
+    for j in 0..n {
+        out.extend_from_slice(&update[j * n + j..(j + 1) * n]);
+    }
+    out
+}
+
+/// The update with this lower triangle; zero above it.
+fn square(lower: &[f64], n: usize) -> Vec<f64> {
+    let mut update = vec![0.0; n * n];
+    let mut rest = lower;
+    for j in 0..n {
+        let (column, tail) = rest.split_at(n - j);
+        update[j * n + j..(j + 1) * n].copy_from_slice(column);
+        rest = tail;
+    }
+    update
 }

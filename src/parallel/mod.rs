@@ -7,5 +7,6 @@ pub mod exchange;
 pub mod halo;
 #[cfg(feature = "cli")]
 pub(crate) mod meter;
+pub mod post;
 pub mod team;
 pub mod traffic;

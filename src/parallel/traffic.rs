@@ -32,6 +32,11 @@ impl Traffic {
         }
     }
 
+    /// A message of `n` numbers.
+    pub fn message(n: usize) -> Traffic {
+        Traffic::of_counts([n as u64].into_iter())
+    }
+
     /// One message for every count above zero.
     pub(super) fn of_counts(counts: impl Iterator<Item = u64>) -> Traffic {
         counts

@@ -164,7 +164,7 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Factors `a`, a GᵀG of this shape. A rank needs the rows of its subtrees and of the top, and all of few columns.
+    /// Factors `a`, a GᵀG of this shape. A rank needs the rows that it has in the factor, and all of few columns.
     /// Collective.
     pub fn new(shape: &Shape, a: Csr) -> Gram {
         Gram::without(shape, a, &[])
@@ -201,15 +201,14 @@ impl Gram {
     }
 
     fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
-        let mut scale = scale_to_unit_diagonal(&mut a);
+        let mut diagonal = vec![0.0; a.n()];
+        for dof in team.own_dofs() {
+            diagonal[dof as usize] = a.get(dof as usize, dof as usize);
+        }
+        sum_all(team.comm(), &mut diagonal);
+        let mut scale = scale(&mut a, &diagonal);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, team, &a, &scale);
-        for (k, s) in (0..).zip(&mut scale) {
-            if !team.tells(k) {
-                *s = 0.0;
-            }
-        }
-        sum_all(team.comm(), &mut scale);
         let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
         for &k in alone.iter().map(|m| &m.0).chain(hidden) {
             a.set_diagonal(k as usize, OUT);
@@ -274,20 +273,19 @@ impl Gram {
     ///
     /// # Panics
     /// If the columns are few.
-    pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
+    pub fn solve_shares(&self, x: &mut [f64]) {
         let (factor, scale) = match &self.factor {
             Factor::Sparse { factor, scale } => (factor, scale),
-            Factor::Raised(raised) => return raised.solve_shares(own, top),
+            Factor::Raised(raised) => return raised.solve_shares(x),
             Factor::Dense(_) => unreachable!("few columns are not shared"),
         };
-        let scaled = |own: &mut [f64], top: &mut [f64]| {
-            let times = |(v, c): (&mut f64, u32)| *v *= scale[c as usize];
-            own.iter_mut().zip(factor.team().own_dofs()).for_each(times);
-            top.iter_mut().zip(factor.team().top_dofs()).for_each(times);
+        let scaled = |x: &mut [f64]| {
+            let pairs = x.iter_mut().zip(factor.team().dofs());
+            pairs.for_each(|(v, c)| *v *= scale[c as usize]);
         };
-        scaled(own, top);
-        factor.solve_shares(own, top);
-        scaled(own, top);
+        scaled(x);
+        factor.solve_shares(x);
+        scaled(x);
     }
 
     /// Number of columns, r.
@@ -305,10 +303,10 @@ impl Gram {
     }
 }
 
-/// Column `k` of −A, without its diagonal entry. A rank has the rows that it tells the others about. Collective.
+/// Column `k` of −A, without its diagonal entry. A rank has its own rows. Collective.
 fn minus_column(team: &Team, a: &Csr, k: u32) -> Vec<f64> {
     let mut out = vec![0.0; a.n()];
-    if team.tells(k) {
+    if team.has(k) {
         let (col, val) = a.row(k as usize);
         for (&j, &v) in col.iter().zip(val).filter(|e| *e.0 != k) {
             out[j as usize] = -v;
@@ -325,7 +323,7 @@ fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Mo
     let mut words: Vec<u64> = Vec::new();
     for body in 0..pattern.n_bodies() {
         let columns = pattern.columns(body);
-        if columns.is_empty() || !team.tells(columns.start as u32) {
+        if columns.is_empty() || !team.has(columns.start as u32) {
             continue;
         }
         let first = columns.start;
@@ -371,8 +369,14 @@ fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A; returns 1/D, one where the diagonal vanishes.
 pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
-    let of = |d: f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
-    let scale: Vec<f64> = a.diagonal().into_iter().map(of).collect();
+    let diagonal = a.diagonal();
+    scale(a, &diagonal)
+}
+
+/// The same with this diagonal.
+fn scale(a: &mut Csr, diagonal: &[f64]) -> Vec<f64> {
+    let of = |&d: &f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
+    let scale: Vec<f64> = diagonal.iter().map(of).collect();
     for i in 0..a.n() {
         for k in a.row_ptr[i]..a.row_ptr[i + 1] {
             a.val[k] = a.val[k] * scale[i] * scale[a.col[k] as usize];

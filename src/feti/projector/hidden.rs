@@ -5,8 +5,6 @@
 //! slides under a last one which it lifts a little. Inverse iteration finds the vector; mostly a single solve tells
 //! that there is none.
 
-use mpi::traits::Communicator;
-
 use super::gram::{Factor, Gram, Motion, NOTHING_SOLVED};
 use super::refined::probe;
 use crate::parallel::exchange::sum_all;
@@ -30,31 +28,27 @@ impl Gram {
             return None;
         };
         let team = factor.team();
-        let (comm, first) = (team.comm(), team.comm().rank() == 0);
+        let comm = team.comm();
+        let n_own = team.sizes().0;
         let kept = |c: u32| f64::from(u8::from(scale[c as usize] > 0.0));
-        let start = |c: u32| kept(c) * probe(c as usize);
-        let mut own: Vec<f64> = team.own_dofs().map(start).collect();
-        let mut top: Vec<f64> = team.top_dofs().map(start).collect();
-        let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
-        let norm = |own: &[f64], top: &[f64]| {
-            let mut sum = [square(own)];
+        let mut shares: Vec<f64> = team.dofs().map(|c| kept(c) * probe(c as usize)).collect();
+        let norm = |own: &[f64]| {
+            let mut sum = [own.iter().map(|v| v * v).sum::<f64>()];
             sum_all(comm, &mut sum);
-            (sum[0] + square(top)).sqrt()
+            sum[0].sqrt()
         };
-        let (mut before, mut least) = (norm(&own, &top), f64::INFINITY);
+        let (mut before, mut least) = (norm(&shares[..n_own]), f64::INFINITY);
         for _ in 0..STEPS {
-            // Shares of the top are summed over the ranks.
-            if !first {
-                top.fill(0.0);
-            }
-            factor.solve_shares(&mut own, &mut top); /*                  x ← A⁺ x / ‖x‖ */
-            let after = norm(&own, &top);
+            // Ghosts are shares of what their owners have.
+            shares[n_own..].fill(0.0);
+            factor.solve_shares(&mut shares); /*                         x ← A⁺ x / ‖x‖ */
+            let after = norm(&shares[..n_own]);
             least = least.min(before / after);
             // What is not a number is not regular, and no motion.
             if least > REGULAR || !after.is_finite() {
                 return None;
             }
-            own.iter_mut().chain(&mut top).for_each(|x| *x /= after);
+            shares.iter_mut().for_each(|x| *x /= after);
             before = 1.0;
         }
         if least > ROUNDING {
@@ -62,13 +56,8 @@ impl Gram {
         }
         let mut x = vec![0.0; self.n()];
         team.own_dofs()
-            .zip(&own)
+            .zip(&shares)
             .for_each(|(c, v)| x[c as usize] = *v);
-        if first {
-            team.top_dofs()
-                .zip(&top)
-                .for_each(|(c, v)| x[c as usize] = *v);
-        }
         sum_all(comm, &mut x);
         let column =
             (0..self.n()).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()).then(j.cmp(&i)))?;

@@ -9,7 +9,7 @@ use mpi::traits::Communicator;
 
 use super::pattern::Pattern;
 use super::rows::Rows;
-use crate::cholesky::team::{Place, Team};
+use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::{exchange_words, sum_all};
 
@@ -66,7 +66,6 @@ impl Numbers {
             (Some(team), Some(before)) => {
                 self.exchange(team, &before);
                 self.sum_of_own(pattern, team, &touched);
-                self.sum_of_top(pattern, team);
                 out.val.copy_from_slice(&self.sum);
             }
             _ => {
@@ -77,23 +76,20 @@ impl Numbers {
         out
     }
 
-    /// The owner and the present value of each entry between these bodies in a row of another rank's subtrees.
+    /// The owner and the present value of each entry between these bodies in a row that another rank has.
     fn of_others(
         &self,
         pattern: &Pattern,
         team: &Team,
         touched: &[bool],
     ) -> Vec<(usize, usize, f64)> {
-        let mut out = Vec::new();
-        for (row, span) in pattern.blocks_between(touched) {
-            match team.place(row) {
-                Place::Subtree { rank, .. } if rank != team.comm().rank() as u32 => {
-                    out.extend(span.map(|k| (rank as usize, k, self.share[k])));
-                }
-                _ => (),
-            }
-        }
-        out
+        let blocks = pattern.blocks_between(touched);
+        let others = blocks.filter(|(row, _)| !team.has(*row));
+        let entries = others.flat_map(|(row, span)| {
+            let owner = team.place(row).rank as usize;
+            span.map(move |k| (owner, k, self.share[k]))
+        });
+        entries.collect()
     }
 
     /// Sends the entries that differ from what they were, and notes what others send.
@@ -120,17 +116,12 @@ impl Numbers {
         }
     }
 
-    /// Sums the shares of the rows of this rank's subtrees.
+    /// Sums the shares of the rows that this rank has.
     fn sum_of_own(&mut self, pattern: &Pattern, team: &Team, touched: &[bool]) {
         self.sum.resize(self.share.len(), 0.0);
-        let here = team.comm().rank() as u32;
-        for (row, span) in pattern.blocks_between(touched) {
-            match team.place(row) {
-                Place::Subtree { rank, .. } if rank == here => {
-                    self.sum[span.clone()].copy_from_slice(&self.share[span]);
-                }
-                _ => (),
-            }
+        let blocks = pattern.blocks_between(touched);
+        for (_, span) in blocks.filter(|(row, _)| team.has(*row)) {
+            self.sum[span.clone()].copy_from_slice(&self.share[span]);
         }
         // The sums begin anew where others have a share.
         for s in &self.sent {
@@ -138,20 +129,6 @@ impl Numbers {
         }
         for s in &self.sent {
             self.sum[s.entry] += s.value;
-        }
-    }
-
-    /// Sums the rows of the top, which every rank has.
-    fn sum_of_top(&mut self, pattern: &Pattern, team: &Team) {
-        let rows = || team.top_dofs().map(|row| pattern.row(row));
-        let mut top: Vec<f64> = Vec::new();
-        rows().for_each(|span| top.extend(&self.share[span]));
-        sum_all(team.comm(), &mut top);
-        let mut rest = &top[..];
-        for span in rows() {
-            let (values, tail) = rest.split_at(span.len());
-            self.sum[span].copy_from_slice(values);
-            rest = tail;
         }
     }
 }

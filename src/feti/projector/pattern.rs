@@ -211,11 +211,6 @@ impl Pattern {
         }
     }
 
-    /// The entries of a row.
-    pub fn row(&self, row: u32) -> Range<usize> {
-        self.row_ptr[row as usize]..self.row_ptr[row as usize + 1]
-    }
-
     /// (row, its entries) for the blocks between these bodies.
     pub fn blocks_between<'a>(
         &'a self,

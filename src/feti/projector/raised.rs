@@ -12,10 +12,9 @@
 use std::rc::Rc;
 
 use faer::prelude::Solve;
-use mpi::traits::Communicator;
 
 use super::gram::{Factor, Gram, Motion};
-use crate::cholesky::team::{Place, Team};
+use crate::cholesky::team::Team;
 use crate::linalg::dense::Dense;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::sum_all;
@@ -45,47 +44,48 @@ pub struct Raised {
     inverse: Dense,
 }
 
-/// The entries that this rank has of a row or of a motion.
+/// The entries of a row or of a motion at this rank's columns and at its ghosts, with their places in shares.
 struct Shared {
     own: Vec<(u32, f64)>,
-    top: Vec<(u32, f64)>,
+    ghosts: Vec<(u32, f64)>,
 }
 
 impl Shared {
     fn new(team: &Team, motion: &Motion) -> Shared {
-        let (rank, first) = (team.comm().rank() as u32, team.first_own());
-        let mut shared = Shared {
-            own: Vec::new(),
-            top: Vec::new(),
-        };
-        for &(c, v) in &motion.0 {
-            match team.place(c) {
-                Place::Subtree { rank: r, number } if r == rank => {
-                    shared.own.push((number - first, v))
-                }
-                Place::Subtree { .. } => (),
-                Place::Top(at) => shared.top.push((at, v)),
-            }
-        }
-        shared
+        let here = motion.0.iter();
+        let here = here.filter_map(|&(c, v)| team.here(c).map(|at| (at, v)));
+        let is_own = |e: &(u32, f64)| (e.0 as usize) < team.sizes().0;
+        let (own, ghosts) = here.partition(is_own);
+        Shared { own, ghosts }
     }
 
-    fn dot(&self, own: &[f64], top: Option<&[f64]>) -> f64 {
-        let of = |e: &[(u32, f64)], x: &[f64]| -> f64 {
-            e.iter().map(|&(i, v)| v * x[i as usize]).sum()
-        };
-        of(&self.own, own) + top.map_or(0.0, |top| of(&self.top, top))
+    /// This rank's part of the product with a vector that is the sum of what the ranks have.
+    fn dot(&self, x: &[f64]) -> f64 {
+        self.dot_own(x) + dot(&self.ghosts, x)
     }
 
-    fn add(&self, alpha: f64, own: &mut [f64], top: Option<&mut [f64]>) {
-        let to = |e: &[(u32, f64)], x: &mut [f64]| {
-            e.iter().for_each(|&(i, v)| x[i as usize] += alpha * v)
-        };
-        to(&self.own, own);
-        if let Some(top) = top {
-            to(&self.top, top);
-        }
+    /// This rank's part of the product with a vector that is the same at a column and at its ghosts.
+    fn dot_own(&self, x: &[f64]) -> f64 {
+        dot(&self.own, x)
     }
+
+    fn add_own(&self, alpha: f64, x: &mut [f64]) {
+        add(&self.own, alpha, x);
+    }
+
+    fn add(&self, alpha: f64, x: &mut [f64]) {
+        add(&self.own, alpha, x);
+        add(&self.ghosts, alpha, x);
+    }
+}
+
+fn dot(entries: &[(u32, f64)], x: &[f64]) -> f64 {
+    entries.iter().map(|&(i, v)| v * x[i as usize]).sum()
+}
+
+fn add(entries: &[(u32, f64)], alpha: f64, x: &mut [f64]) {
+    let entries = entries.iter();
+    entries.for_each(|&(i, v)| x[i as usize] += alpha * v);
 }
 
 impl Gram {
@@ -234,32 +234,24 @@ impl Raised {
     }
 
     /// The same for a vector that no rank has whole ([`Gram::solve_shares`]). Collective.
-    pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
+    pub fn solve_shares(&self, x: &mut [f64]) {
         let [rows, motions] = &self.shared;
         let Factor::Sparse { factor, .. } = &self.base.factor else {
             unreachable!("it was made from such a factor")
         };
-        let team = factor.team();
-        // One rank counts for the rows of the top where all have the same.
-        let first = team.comm().rank() == 0;
-        let summed = |mut values: Vec<f64>| {
-            clock::timed(Phase::Reduction, || sum_all(team.comm(), &mut values));
-            values
+        let comm = factor.team().comm();
+        let summed = |values: &mut Vec<f64>| {
+            clock::timed(Phase::Reduction, || sum_all(comm, values));
         };
-        let nb = motions.iter().map(|n| n.dot(own, Some(top))).collect();
-        let w = self.forces(&summed(nb));
-        for (c, w) in rows.iter().zip(&w) {
-            c.add(-w, own, first.then_some(&mut *top));
-        }
-        self.base.solve_shares(own, top);
-        let cx = rows
-            .iter()
-            .map(|c| c.dot(own, first.then_some(top)))
-            .collect();
-        let z = self.amounts(&w, &summed(cx));
-        for (n, z) in motions.iter().zip(&z) {
-            n.add(*z, own, Some(top));
-        }
+        let mut nb: Vec<f64> = motions.iter().map(|n| n.dot(x)).collect();
+        summed(&mut nb);
+        let w = self.forces(&nb);
+        rows.iter().zip(&w).for_each(|(c, w)| c.add_own(-w, x));
+        self.base.solve_shares(x);
+        let mut cx: Vec<f64> = rows.iter().map(|c| c.dot_own(x)).collect();
+        summed(&mut cx);
+        let z = self.amounts(&w, &cx);
+        motions.iter().zip(&z).for_each(|(n, z)| n.add(*z, x));
     }
 }
 

@@ -1,16 +1,16 @@
 //! A factor that ranks share, applied to vectors of columns that no rank has whole.
 //!
-//! A rank has entries for the columns in its own rows of G and QG. Those that belong to subtrees go to the rank of the
-//! subtree, the solution comes back the same way. Only the columns of the top, which separate the subtrees, are summed
-//! over all ranks.
+//! A rank has entries for the columns in its own rows of G and QG. Most belong to fronts of its own or to those above
+//! them: what it has of the latter goes up the tree with what its fronts leave to them, and the solution comes back the
+//! same way. The rest goes to the rank that has the front.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::gram::Gram;
 use super::rows::Rows;
-use crate::cholesky::team::{Place, Team};
-use crate::parallel::clock::{self, Phase};
+use crate::cholesky::team::Team;
+use crate::parallel::exchange::any;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
@@ -18,15 +18,15 @@ use crate::Result;
 /// The way from the columns of this rank's rows to those who factor them, and back.
 pub struct Spread {
     team: Rc<Team>,
-    /// Columns of subtrees in the order of the owners' numbers, and the way to the owners.
-    below: Vec<u32>,
-    halo: Halo,
-    /// Columns of the top, each with its place in it.
-    top: Vec<(u32, u32)>,
-    /// The columns of this rank's subtrees.
+    /// Columns that this rank has or that are its ghosts, each with its place here.
+    near: Vec<(u32, u32)>,
+    /// The other columns in the order of the owners' numbers, and the way to the owners; `None` where no rank has any.
+    far: Vec<u32>,
+    halo: Option<Halo>,
+    /// The columns that this rank has.
     own: PetscVec,
-    /// All columns of the top.
-    shared: RefCell<Vec<f64>>,
+    /// The same with the ghosts.
+    shares: RefCell<Vec<f64>>,
     /// A number for every column; only those of this rank's rows are in use.
     work: RefCell<Vec<f64>>,
 }
@@ -34,26 +34,29 @@ pub struct Spread {
 impl Spread {
     /// For these columns and factors that this team shares. Collective.
     pub fn new(session: &Session, team: &Rc<Team>, columns: &[u32]) -> Result<Spread> {
-        let mut top = Vec::new();
-        // PETSc's numbers of the columns of subtrees: rank after rank.
+        let mut near = Vec::new();
+        // PETSc's numbers of columns that others have: rank after rank.
         let mut placed: Vec<(u32, u32)> = Vec::new();
         for &column in columns {
-            match team.place(column) {
-                Place::Subtree { number, .. } => placed.push((number, column)),
-                Place::Top(at) => top.push((column, at)),
+            match team.here(column) {
+                Some(at) => near.push((column, at)),
+                None => placed.push((team.place(column).number, column)),
             }
         }
         placed.sort_unstable();
-        let (numbers, below): (Vec<u32>, Vec<u32>) = placed.into_iter().unzip();
-        let (n_own, n_top) = team.sizes();
+        let (numbers, far): (Vec<u32>, Vec<u32>) = placed.into_iter().unzip();
+        let (n_own, n_ghosts) = team.sizes();
         let own = PetscVec::mpi(session, n_own)?;
+        let some = any(session.comm(), !far.is_empty());
         Ok(Spread {
             team: team.clone(),
-            halo: Halo::new(session, &own, &numbers)?,
-            below,
-            top,
+            halo: some
+                .then(|| Halo::new(session, &own, &numbers))
+                .transpose()?,
+            near,
+            far,
             own,
-            shared: RefCell::new(vec![0.0; n_top]),
+            shares: RefCell::new(vec![0.0; n_own + n_ghosts]),
             work: RefCell::new(vec![0.0; team.n()]),
         })
     }
@@ -66,34 +69,41 @@ impl Spread {
     /// Whether it knows all columns of these rows.
     pub fn covers(&self, rows: &Rows) -> bool {
         let mut known = vec![false; self.team.n()];
-        let of_top = self.top.iter().map(|t| &t.0);
-        self.below
-            .iter()
-            .chain(of_top)
+        let near = self.near.iter().map(|n| &n.0);
+        near.chain(&self.far)
             .for_each(|&c| known[c as usize] = true);
         rows.columns().iter().all(|&c| known[c as usize])
     }
 
     /// x ← x − along A⁺ fromᵀ x for the matrix A of this factor. Collective.
     pub fn remove(&self, factor: &Gram, x: &PetscVec, from: &Rows, along: &Rows) -> Result<()> {
-        let (mut work, mut shared) = (self.work.borrow_mut(), self.shared.borrow_mut());
-        self.below.iter().for_each(|&c| work[c as usize] = 0.0);
-        self.top.iter().for_each(|&(c, _)| work[c as usize] = 0.0);
+        let (mut work, mut shares) = (self.work.borrow_mut(), self.shares.borrow_mut());
+        let columns = self.near.iter().map(|n| &n.0).chain(&self.far);
+        columns.for_each(|&c| work[c as usize] = 0.0);
         from.add_transpose(&x.array()?, &mut work);
-        let mut ghosts: Vec<f64> = self.below.iter().map(|&c| work[c as usize]).collect();
-        self.halo.sum(&ghosts, &self.own)?;
-        shared.fill(0.0);
-        let of_top = self.top.iter();
-        of_top.for_each(|&(c, at)| shared[at as usize] = work[c as usize]);
-        clock::timed(Phase::Natural, || -> Result<()> {
-            factor.solve_shares(&mut self.own.array_mut()?, &mut shared);
-            Ok(())
-        })?;
-        self.halo.fetch(&self.own, &mut ghosts)?;
-        let of_subtrees = self.below.iter().zip(&ghosts);
-        of_subtrees.for_each(|(&c, v)| work[c as usize] = *v);
-        let of_top = self.top.iter();
-        of_top.for_each(|&(c, at)| work[c as usize] = shared[at as usize]);
+        shares.fill(0.0);
+        for &(c, at) in &self.near {
+            shares[at as usize] = work[c as usize];
+        }
+        let mut ghosts: Vec<f64> = self.far.iter().map(|&c| work[c as usize]).collect();
+        if let Some(halo) = &self.halo {
+            halo.sum(&ghosts, &self.own)?;
+            let from_others = self.own.array()?;
+            let pairs = shares.iter_mut().zip(&*from_others);
+            pairs.for_each(|(s, v)| *s += v);
+        }
+        factor.solve_shares(&mut shares);
+        if let Some(halo) = &self.halo {
+            let mut own = self.own.array_mut()?;
+            let n = own.len();
+            own.copy_from_slice(&shares[..n]);
+            drop(own);
+            halo.fetch(&self.own, &mut ghosts)?;
+        }
+        let far = self.far.iter().zip(&ghosts);
+        far.for_each(|(&c, v)| work[c as usize] = *v);
+        let near = self.near.iter();
+        near.for_each(|&(c, at)| work[c as usize] = shares[at as usize]);
         along.add(-1.0, &work, &mut x.array_mut()?);
         Ok(())
     }

@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 use super::fit::Law;
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
-use crate::cholesky::team::least_subtrees;
 use crate::feti::projector::gram::FEW;
 
 /// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
@@ -35,6 +34,13 @@ struct Phase {
 fn any(x: f64) -> f64 {
     f64::from(u8::from(x > 0.0))
 }
+
+/// The phase of GᵀQG in the set-up.
+const NATURAL: usize = 3;
+
+/// Numbers that fronts leave to each other on the way to the root, for each rigid motion: about two lines of a square
+/// for each line, and a quarter of that every second time.
+const LEFT: f64 = 2.0;
 
 /// The phases that read the same operators again and again.
 const ITERATED: std::ops::Range<usize> = 5..10;
@@ -155,33 +161,40 @@ const FILL: f64 = 93.0;
 /// structure of the fronts, and who has what.
 const KNOWN: f64 = 12.0 * NEAR + 200.0;
 
-/// How ranks share the factor of Gᵀ Q G of a plane grid of bodies (`cholesky::team`).
+/// The part of the operations of the factor on the way from a single body to the root.
+const WAY: f64 = 0.2;
+
+/// How ranks share the factor of Gᵀ Q G of a plane grid of bodies (`cholesky::deal`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
-    /// Number of subtrees; none if every rank has the whole factor.
-    pub subtrees: f64,
-    /// Number of rows in the top.
-    pub top: f64,
-    /// Number of rows whose factor a rank has.
+    /// Messages, one after the other, from a subtree to the root; none if every rank has the whole factor.
+    pub messages: f64,
+    /// Number of rows between subtrees on the way to the root.
+    pub way: f64,
+    /// Number of rows that are eliminated one after the other: those of the subtree of a rank, and the way.
     pub rows: f64,
+    /// The part of the operations that are done one after the other.
+    pub work: f64,
 }
 
 impl Shares {
-    /// Of r rigid motions among `ranks` ranks: squares of bodies, at least four, and the lines between them.
+    /// Of r rigid motions among `ranks` ranks: squares of bodies, one for each rank, and the lines between them.
     pub fn new(r: f64, ranks: f64) -> Shares {
         if r <= FEW as f64 || ranks <= 1.0 {
             return Shares {
-                subtrees: 0.0,
-                top: 0.0,
+                messages: 0.0,
+                way: 0.0,
                 rows: r,
+                work: 1.0,
             };
         }
-        let subtrees = least_subtrees(ranks).max(ranks.min(4.0));
-        let top = (2.0 * (subtrees.sqrt() - 1.0) * r.sqrt()).min(r);
+        // A line through the square, two halves of one, two quarters …
+        let way = (3.0 * (1.0 - ranks.sqrt().recip()) * r.sqrt()).min(r);
         Shares {
-            subtrees,
-            top,
-            rows: top + (r - top) / subtrees,
+            messages: ranks.log2(),
+            way,
+            rows: way + (r - way) / ranks,
+            work: WAY + (1.0 - WAY) / ranks,
         }
     }
 }
@@ -263,18 +276,20 @@ impl Model {
         let r = work.kernels;
         let sum = |n: f64| any(n) * network.all_reduce(ranks, 8.0 * n);
         let shares = Shares::new(r, ranks);
-        let shared = any(shares.subtrees);
+        let shared = any(shares.messages);
         let mut setup = SetupSeconds::from_fn(at);
-        // The product and, where ranks share the factor, what subtrees leave to the top, and the scaling.
+        // Of the factor's work, the last term, what is done one after the other.
+        let mut of_setup = terms(NATURAL, self.cache, work);
+        of_setup[2] *= shares.work;
+        setup.natural = self.laws[NATURAL].at(&of_setup);
+        // The product or, where ranks share the factor, what subtrees leave to the rows above, and the scaling.
         setup.natural += match shared {
             0.0 => sum(NEAR * r),
-            _ => sum(NEAR * shares.top) + sum(NEAR * r) + sum(r),
+            _ => network.messages(shares.messages, 8.0 * LEFT * r) + sum(r),
         };
-        // A projection sums all columns, or those of the top. The rank of a subtree hears from all that have its
-        // columns, and answers.
-        let summed = if shared > 0.0 { shares.top } else { r };
-        let heard = shared * ranks / shares.subtrees.max(1.0);
-        let answered = 2.0 * PROJECTIONS * network.messages(heard, 8.0 * NEAR * heard);
+        // A projection sums all columns, or goes up the tree and down again.
+        let summed = if shared > 0.0 { 0.0 } else { r };
+        let answered = 2.0 * PROJECTIONS * network.messages(shares.messages, 16.0 * shares.way);
         let solved = Work {
             kernels: shares.rows,
             ..*work

@@ -4,7 +4,7 @@ use super::super::{Problem, Series};
 use super::*;
 use crate::cholesky::dissection::nested_dissection;
 use crate::cholesky::symbolic::Symbolic;
-use crate::cholesky::team::shared_parts;
+use crate::cholesky::team::longest_way;
 use crate::feti::krylov::tally::{Communication, PerIteration};
 use crate::linalg::csr::Csr;
 
@@ -136,13 +136,15 @@ fn shares_are_those_of_the_factor() {
     let sets = nested_dissection(&graph, &all, None);
     let symbolic = Symbolic::with_supernodes(&graph, &[], &sets);
     for ranks in [4, 100, 10_000] {
-        let (subtrees, top) = shared_parts(&symbolic, ranks);
+        let way = longest_way(&symbolic, ranks);
         let modelled = Shares::new((n * n) as f64, ranks as f64);
-        let times = |found: usize, modelled: f64| found as f64 / modelled;
-        let (more, larger) = (times(subtrees, modelled.subtrees), times(top, modelled.top));
+        let within = |found: f64, modelled: f64| (0.5..2.0).contains(&(found / modelled));
         assert!(
-            (0.8..2.5).contains(&more) && (0.5..2.0).contains(&larger),
-            "{ranks} ranks: {subtrees} subtrees, {top} rows in the top, modelled {modelled:?}"
+            within(way.rows, modelled.rows)
+                && within(way.messages, modelled.messages)
+                && within(way.flops / symbolic.flops(), modelled.work),
+            "{ranks} ranks: {way:?} of {} operations, modelled {modelled:?}",
+            symbolic.flops()
         );
     }
 }
