@@ -41,19 +41,28 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
         passive.push(j);
         loop {
             let z = least_squares(a, b, &passive);
-            let bad = passive.iter().zip(&z);
-            let step = bad
-                .filter(|(&j, &z)| !free[j] && z <= 0.0)
-                .map(|(&j, &z)| x[j] / (x[j] - z))
-                .fold(f64::INFINITY, f64::min);
+            // The part of the way to z on which column j stays in the cone.
+            let way = |&(&j, &z): &(&usize, &f64)| match !free[j] && z <= 0.0 {
+                true => x[j] / (x[j] - z),
+                false => f64::INFINITY,
+            };
+            let ways: Vec<f64> = passive.iter().zip(&z).map(|pair| way(&pair)).collect();
+            let step = ways.iter().fold(f64::INFINITY, |a, b| a.min(*b));
             if step.is_infinite() {
                 passive.iter().zip(&z).for_each(|(&j, &z)| x[j] = z);
                 break;
             }
-            let step = if step.is_finite() { step } else { 0.0 };
             for (&j, &z) in passive.iter().zip(&z) {
                 x[j] += step * (z - x[j]);
             }
+            // Whoever ends the way leaves, even where rounding keeps x above zero: each round of this loop has fewer
+            // columns than the one before. (A way that is not a number is 0 / 0.)
+            let ends = |way: f64| way.is_nan() || way <= step;
+            let last: Vec<usize> = (passive.iter().zip(&ways))
+                .filter(|(_, way)| ends(**way))
+                .map(|(&j, _)| j)
+                .collect();
+            last.iter().for_each(|&j| x[j] = 0.0);
             passive.retain(|&j| free[j] || x[j] > 0.0);
             let left = (0..n).filter(|j| !passive.contains(j));
             left.for_each(|j| x[j] = 0.0);
