@@ -22,19 +22,54 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Vec<Vec<u32>> {
-    let mut work = Cutting {
-        k,
-        coordinates,
-        part: vec![NONE; k.n()],
-        distance: vec![0; k.n()],
-        out: Vec::new(),
-        next_part: 0,
-    };
+    let mut work = Cutting::new(k, coordinates);
     work.dissect(interior.to_vec());
     work.out
 }
 
+/// The part of [`nested_dissection`], without coordinates, that belongs to one of several ranks. The parts of all
+/// ranks, one after the other, are the whole.
+///
+/// At each cut the ranks divide in proportion to the dofs: a rank makes the cuts of the sets that lead to its own, and
+/// all of its own. So it looks at 2 n dofs and at its own, and not at n log n.
+pub fn part_of_dissection(k: &Csr, interior: &[u32], rank: usize, ranks: usize) -> Vec<Vec<u32>> {
+    let mut work = Cutting::new(k, None);
+    let (mut set, mut among) = (interior.to_vec(), 0..ranks);
+    // Separators follow after what they separate.
+    let mut separators: Vec<Vec<u32>> = Vec::new();
+    while among.len() > 1 {
+        let (lower, upper, separator) = match work.halves(set) {
+            Ok(halves) => halves,
+            Err(whole) => {
+                set = if rank == among.start {
+                    whole
+                } else {
+                    Vec::new()
+                };
+                break;
+            }
+        };
+        if rank + 1 == among.end {
+            separators.push(separator);
+        }
+        let part = lower.len() as f64 / (lower.len() + upper.len()).max(1) as f64;
+        let of_lower = (part * among.len() as f64).round() as usize;
+        let middle = among.start + of_lower.clamp(1, among.len() - 1);
+        (set, among) = match rank < middle {
+            true => (lower, among.start..middle),
+            false => (upper, middle..among.end),
+        };
+    }
+    work.dissect(set);
+    let separators = separators.into_iter().rev();
+    work.out.extend(separators.filter(|s| !s.is_empty()));
+    work.out
+}
+
 const NONE: u32 = u32::MAX;
+
+/// Lower half, upper half, separator.
+type Halves = (Vec<u32>, Vec<u32>, Vec<u32>);
 
 struct Cutting<'a> {
     k: &'a Csr,
@@ -47,32 +82,47 @@ struct Cutting<'a> {
     next_part: u32,
 }
 
-impl Cutting<'_> {
+impl<'a> Cutting<'a> {
+    fn new(k: &'a Csr, coordinates: Option<&'a [[f64; 3]]>) -> Cutting<'a> {
+        Cutting {
+            k,
+            coordinates,
+            part: vec![NONE; k.n()],
+            distance: vec![0; k.n()],
+            out: Vec::new(),
+            next_part: 0,
+        }
+    }
+
     fn dissect(&mut self, set: Vec<u32>) {
-        if set.len() <= LEAF {
-            if !set.is_empty() {
-                self.out.push(set);
+        match self.halves(set) {
+            Ok((lower, upper, separator)) => {
+                self.dissect(lower);
+                self.dissect(upper);
+                self.out.extend(Some(separator).filter(|s| !s.is_empty()));
             }
-            return;
+            Err(set) => self.out.extend(Some(set).filter(|s| !s.is_empty())),
+        }
+    }
+
+    /// (lower, upper, separator) of a set; the set itself if it is to be one front.
+    fn halves(&mut self, set: Vec<u32>) -> Result<Halves, Vec<u32>> {
+        if set.len() <= LEAF {
+            return Err(set);
         }
         let (lower, upper) = match self.cut_by_coordinate(&set) {
             Some(cut) => cut,
             None => match self.cut_by_distance(&set) {
                 Some(cut) => cut,
                 // A dense block cannot be cut: the whole set is one front.
-                None => return self.out.push(set),
+                None => return Err(set),
             },
         };
-        let (lower, upper, separator) = self.separate(lower, upper);
-        self.dissect(lower);
-        self.dissect(upper);
-        if !separator.is_empty() {
-            self.out.push(separator);
-        }
+        Ok(self.separate(lower, upper))
     }
 
     /// Takes the fewest dofs out of both sides such that no edge joins the two: (lower, upper, separator).
-    fn separate(&mut self, lower: Vec<u32>, upper: Vec<u32>) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+    fn separate(&mut self, lower: Vec<u32>, upper: Vec<u32>) -> Halves {
         // Dofs of `upper` that are neighbours of `lower` get numbers in the order in which they are found.
         let (unseen, first) = (self.next_part, self.next_part + 1);
         upper.iter().for_each(|&i| self.part[i as usize] = unseen);

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use std::time::Instant;
 
 /// The timed phases: everything but the work inside the subdomains during the iteration. Phases of the set-up never run
-/// inside each other, nor do phases of the iteration.
+/// inside each other, but for the last two, nor do phases of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Set-up: factors, S, T and Ψ of the subdomains.
@@ -19,6 +19,10 @@ pub enum Phase {
     LiftingSetup,
     /// Set-up: G and Gᵀ Q G.
     NaturalSetup,
+    /// The part of it that every rank does for all bodies: pattern and order of Gᵀ Q G.
+    NaturalOrder,
+    /// Another part of it: the factor of Gᵀ G.
+    NaturalFactor,
     /// Iteration: messages between neighbours, with the copies into and out of them.
     Exchange,
     /// Iteration: all-reduces of the projector.

@@ -6,10 +6,11 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::panels::Panels;
-use crate::feti::projector::gram::{Gram, Shape};
+use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gtg::Side;
 use crate::feti::projector::pattern::Pattern;
 use crate::feti::projector::refined::Refined;
+use crate::feti::projector::shape::Shape;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;

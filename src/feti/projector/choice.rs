@@ -5,9 +5,11 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
-use super::gram::{Gram, Motion, Shape};
+use super::gram::{Gram, Motion};
 use super::natural::NaturalCoarse;
 use super::raised::{Row, MOST};
+use super::shape::Shape;
+use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{gather_all, highest, sum_all};
 
 /// Motions on which the rows do more work than this, relative to the largest that they could do, are not known well
@@ -60,7 +62,9 @@ impl NaturalCoarse {
         loop {
             let mut numbers = self.numbers.borrow_mut();
             let product = numbers.renewed(comm, way, &self.all, chosen);
-            let gram = Gram::without(shape, product, &hidden);
+            let gram = clock::timed(Phase::NaturalFactor, || {
+                Gram::without(shape, product, &hidden)
+            });
             let Some((column, motion)) = gram.weakest().filter(|_| hidden.len() < MOST_HIDDEN)
             else {
                 return gram;

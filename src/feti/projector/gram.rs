@@ -6,13 +6,10 @@
 
 use std::rc::Rc;
 
-use mpi::topology::SimpleCommunicator;
-
 use super::pattern::Pattern;
 use super::raised::Raised;
-use crate::cholesky::dissection::nested_dissection;
+use super::shape::Shape;
 use crate::cholesky::shared::SharedCholesky;
-use crate::cholesky::symbolic::Symbolic;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -98,50 +95,6 @@ impl Motion {
     }
 }
 
-/// Where GᵀG has entries, and in which order it is factored.
-pub struct Shape {
-    /// The entries for all candidate rows.
-    pub pattern: Pattern,
-    /// The order and the ranks that share the factor, if there are many columns.
-    team: Option<Rc<Team>>,
-}
-
-impl Shape {
-    /// The shape of matrices with this pattern; there are to be `copies` of a factor. `home` has the rank of each body,
-    /// or nothing if that does not matter. Collective.
-    pub fn of(comm: &SimpleCommunicator, pattern: Pattern, copies: usize, home: &[u32]) -> Shape {
-        let r = pattern.bodies().len();
-        // Whole bodies are ordered: the columns of one are all coupled.
-        let team = (r > FEW).then(|| {
-            let graph = pattern.graph();
-            let floats = |b: &u32| !pattern.columns(*b as usize).is_empty();
-            // What meets more than half of all bodies comes last: no cut would separate it from anything.
-            let everywhere = |b: &u32| 2 * graph.row(*b as usize).0.len() > graph.n();
-            let (last, floating): (Vec<u32>, Vec<u32>) =
-                (0..graph.n() as u32).filter(floats).partition(everywhere);
-            let columns = |b: &u32| pattern.columns(*b as usize).map(|c| c as u32);
-            let sets = nested_dissection(&graph, &floating, None).into_iter();
-            let sets = sets.chain((!last.is_empty()).then_some(last));
-            let sets: Vec<Vec<u32>> = sets
-                .map(|set| set.iter().flat_map(columns).collect())
-                .collect();
-            let symbolic = Symbolic::with_supernodes(&pattern.zeros(), &[], &sets);
-            let bodies = pattern.bodies().iter();
-            let home: Vec<u32> = match home.is_empty() {
-                true => Vec::new(),
-                false => bodies.map(|&b| home[b as usize]).collect(),
-            };
-            Team::new(comm, symbolic, copies, &home).into()
-        });
-        Shape { pattern, team }
-    }
-
-    /// The ranks that share factors of this shape, if there are many columns.
-    pub fn team(&self) -> Option<&Rc<Team>> {
-        self.team.as_ref()
-    }
-}
-
 /// A factor of A = GᵀG, scaled to a unit diagonal.
 pub(super) enum Factor {
     Dense(Semidefinite),
@@ -173,7 +126,7 @@ impl Gram {
     /// The same, without these columns as well, each of which depends on the others though its pivot does not show it.
     /// They are many. Collective.
     pub fn without(shape: &Shape, a: Csr, hidden: &[u32]) -> Gram {
-        match &shape.team {
+        match shape.team() {
             None => Gram::few(&a),
             Some(team) => Gram::many(&shape.pattern, team, a, hidden),
         }
@@ -206,7 +159,8 @@ impl Gram {
             diagonal[dof as usize] = a.get(dof as usize, dof as usize);
         }
         sum_all(team.comm(), &mut diagonal);
-        let mut scale = scale(&mut a, &diagonal);
+        let own: Vec<usize> = team.own_dofs().map(|dof| dof as usize).collect();
+        let mut scale = scale(&mut a, &diagonal, &own);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, team, &a, &scale);
         let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
@@ -242,7 +196,7 @@ impl Gram {
     /// weights do not change what rows hold, but hide it where they differ by many orders. `None` if the columns are
     /// few, or dependent beyond that after rounding. Collective.
     pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
-        let team = shape.team.as_ref()?;
+        let team = shape.team()?;
         let mut scale = scale_to_unit_diagonal(&mut a);
         for &k in &plain.dropped {
             a.set_diagonal(k as usize, OUT);
@@ -369,15 +323,15 @@ fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A; returns 1/D, one where the diagonal vanishes.
 pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
-    let diagonal = a.diagonal();
-    scale(a, &diagonal)
+    let (diagonal, all) = (a.diagonal(), (0..a.n()).collect::<Vec<usize>>());
+    scale(a, &diagonal, &all)
 }
 
-/// The same with this diagonal.
-fn scale(a: &mut Csr, diagonal: &[f64]) -> Vec<f64> {
+/// The same with this diagonal, in these rows.
+fn scale(a: &mut Csr, diagonal: &[f64], rows: &[usize]) -> Vec<f64> {
     let of = |&d: &f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
     let scale: Vec<f64> = diagonal.iter().map(of).collect();
-    for i in 0..a.n() {
+    for &i in rows {
         for k in a.row_ptr[i]..a.row_ptr[i + 1] {
             a.val[k] = a.val[k] * scale[i] * scale[a.col[k] as usize];
         }

@@ -11,9 +11,10 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::distributed::{Distributed, Work};
-use super::gram::{scale_to_unit_diagonal, Gram, Shape};
+use super::gram::{scale_to_unit_diagonal, Gram};
 use super::refined::{probe, Refined};
 use super::rows::Rows;
+use super::shape::Shape;
 use super::spread::Spread;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::csr::Csr;

@@ -16,6 +16,7 @@ pub mod pattern;
 mod raised;
 pub mod refined;
 pub mod rows;
+pub mod shape;
 pub mod spread;
 pub mod sweep;
 mod weights;

@@ -14,12 +14,13 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::distributed::Distributed;
-use super::gram::{Gram, Shape};
+use super::gram::Gram;
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::numbers::Numbers;
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
+use super::shape::Shape;
 use super::spread::Spread;
 use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;

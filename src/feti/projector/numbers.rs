@@ -11,6 +11,7 @@ use super::pattern::Pattern;
 use super::rows::Rows;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
+use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{exchange_words, sum_all};
 
 /// An entry that another rank has sent.
@@ -44,7 +45,7 @@ impl Numbers {
         rows: &Rows,
         chosen: &[bool],
     ) -> Csr {
-        let mut out = pattern.zeros();
+        let mut out = clock::timed(Phase::NaturalOrder, || pattern.zeros());
         if self.share.is_empty() {
             self.chosen = vec![false; rows.n()];
             self.share = vec![0.0; out.val.len()];

@@ -8,6 +8,7 @@ use mpi::topology::SimpleCommunicator;
 use super::rows::Rows;
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
+use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{gather_all, sum_all};
 
 /// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. The same on every
@@ -46,11 +47,14 @@ impl Pattern {
             }
         }
         let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
-        for pair in gather_all(comm, &distinct(pairs)).concat() {
-            lists[(pair >> 32) as usize].push(pair as u32);
-        }
-        let lists = lists.into_iter().map(distinct).collect();
-        Pattern::of_bodies(lists, start)
+        let all = gather_all(comm, &distinct(pairs)).concat();
+        clock::timed(Phase::NaturalOrder, || {
+            for pair in all {
+                lists[(pair >> 32) as usize].push(pair as u32);
+            }
+            let lists = lists.into_iter().map(distinct).collect();
+            Pattern::of_bodies(lists, start)
+        })
     }
 
     /// The pattern with entries for each body and those in its list, which increases and contains the body itself.

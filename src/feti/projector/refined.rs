@@ -4,8 +4,9 @@
 //! its symmetric part, which is what is factored. A factor that leaves out columns without a choice of pivots may keep
 //! small ones. A solution for a known vector tells how many steps are needed; as a rule it is none.
 
-use super::gram::{Gram, Shape};
+use super::gram::Gram;
 use super::gtg::Side;
+use super::shape::Shape;
 use crate::linalg::csr::Csr;
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU

@@ -35,20 +35,23 @@ fn any(x: f64) -> f64 {
     f64::from(u8::from(x > 0.0))
 }
 
-/// The phase of GᵀQG in the set-up.
-const NATURAL: usize = 3;
+/// The phase of the factor of GᵀQG in the set-up.
+const FACTOR: usize = 4;
+
+/// The phase of its order.
+const ORDER: usize = 5;
 
 /// Numbers that fronts leave to each other on the way to the root, for each rigid motion: about two lines of a square
 /// for each line, and a quarter of that every second time.
 const LEFT: f64 = 2.0;
 
 /// The phases that read the same operators again and again.
-const ITERATED: std::ops::Range<usize> = 5..10;
+const ITERATED: std::ops::Range<usize> = 7..12;
 
 /// Number of cache sizes that are tried: powers of √2 times 128 kB.
 const CACHES: usize = 20;
 
-const PHASES: [Phase; 11] = [
+const PHASES: [Phase; 13] = [
     Phase {
         name: "set-up, subdomains",
         terms: &["subdomains", "unknowns", "interface^3"],
@@ -69,12 +72,21 @@ const PHASES: [Phase; 11] = [
     },
     Phase {
         name: "set-up, GᵀQG",
-        terms: &["multipliers", "r log r", "r^1.5"],
-        values: |w| {
-            let r = w.kernels;
-            vec![any(r) * w.multipliers, r * (r + 1.0).log2(), r.powf(1.5)]
-        },
+        terms: &["multipliers", "1"],
+        values: |w| vec![any(w.kernels) * w.multipliers, any(w.kernels)],
         seconds: |p| p.setup.natural,
+    },
+    Phase {
+        name: "set-up, factor of GᵀQG",
+        terms: &["r", "r^1.5"],
+        values: |w| vec![w.kernels, w.kernels.powf(1.5)],
+        seconds: |p| p.setup.factor,
+    },
+    Phase {
+        name: "set-up, order of GᵀQG",
+        terms: &["r", "r log r"],
+        values: |w| vec![w.kernels, w.kernels * (w.kernels + 1.0).log2()],
+        seconds: |p| p.setup.order,
     },
     Phase {
         name: "set-up, rest",
@@ -278,35 +290,45 @@ impl Model {
         let shares = Shares::new(r, ranks);
         let shared = any(shares.messages);
         let mut setup = SetupSeconds::from_fn(at);
-        // Of the factor's work, the last term, what is done one after the other.
-        let mut of_setup = terms(NATURAL, self.cache, work);
-        of_setup[2] *= shares.work;
-        setup.natural = self.laws[NATURAL].at(&of_setup);
-        // The product or, where ranks share the factor, what subtrees leave to the rows above, and the scaling.
-        setup.natural += match shared {
+        // Of the factor what is done one after the other.
+        let one_after_other = [shares.rows, r.powf(1.5) * shares.work];
+        setup.factor = self.laws[FACTOR].at(&one_after_other);
+        // The largest entries of columns and stiffnesses of bodies; the product or, where ranks share the factor, what
+        // subtrees leave to the rows above, and the scaling.
+        setup.natural += 3.0 * sum(r);
+        setup.factor += match shared {
             0.0 => sum(NEAR * r),
             _ => network.messages(shares.messages, 8.0 * LEFT * r) + sum(r),
         };
+        // A rank makes the cuts of twice all bodies and of its own. All hear of all neighbours and of the order.
+        let cuts = (r + 1.0).log2().min(2.0 + (r / ranks + 1.0).log2());
+        setup.order = self.laws[ORDER].at(&[r, r * cuts]);
+        setup.order += any(r)
+            * any(ranks - 1.0)
+            * network.messages(2.0 * ranks.log2(), 8.0 * (NEAR + 1.0) * r);
         // A projection sums all columns, or goes up the tree and down again.
         let summed = if shared > 0.0 { 0.0 } else { r };
         let answered = 2.0 * PROJECTIONS * network.messages(shares.messages, 16.0 * shares.way);
+        // A rank has the columns of its own part, of the factor and in its cache.
         let solved = Work {
             kernels: shares.rows,
             ..*work
         };
-        let of_projections = |k: usize| self.laws[k].at(&terms(k, self.cache, &solved));
+        let iterated = |k: usize| self.laws[k].at(&terms(k, self.cache, &solved));
+        let [local, primal, lifting, natural, copies] =
+            std::array::from_fn(|k| iterated(ITERATED.start + k));
         let iteration = IterationSeconds {
-            local: at(5),
-            primal: at(6),
-            lifting: at(7),
-            natural: of_projections(8),
-            exchange: at(9) + network.messages(sent.messages, sent.bytes) + answered,
+            local,
+            primal,
+            lifting,
+            natural,
+            exchange: copies + network.messages(sent.messages, sent.bytes) + answered,
             reduction: sent.dots * network.all_reduce(ranks, 8.0) + PROJECTIONS * sum(summed),
         };
         Modelled {
             setup,
             iteration,
-            outside: at(10),
+            outside: at(ITERATED.end),
         }
     }
 }

@@ -110,7 +110,9 @@ fn label(name: &str) -> String {
 }
 
 fn phase_colour(name: &str) -> Colour {
-    colour(phases().iter().position(|p| *p == name).unwrap_or(0))
+    let k = phases().iter().position(|p| *p == name).unwrap_or(0);
+    // There is one phase more than colours in the cycle.
+    Colour::CYCLE.get(k).copied().unwrap_or(Colour::INK)
 }
 
 /// Milliseconds of an iteration by phase over bodies of four subdomains: markers are measured, lines modelled.

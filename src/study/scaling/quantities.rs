@@ -44,8 +44,12 @@ quantities! {
         primal: "S_Π",
         /// Z_c and A of the bodies.
         lifting: "Z_c",
-        /// G and Gᵀ Q G.
+        /// G and Gᵀ Q G, without the next two.
         natural: "GᵀQG",
+        /// The factor of Gᵀ G.
+        factor: "factor",
+        /// Pattern and order of Gᵀ Q G, which every rank finds for all bodies.
+        order: "order",
         /// Everything else: who shares what, B and B_D, kernels.
         rest: "rest",
     }

@@ -38,3 +38,18 @@ fn the_top_separator_of_a_strip_is_its_short_side() {
         assert!(d.last().expect("not empty").len() <= 6);
     }
 }
+
+#[test]
+fn the_parts_of_ranks_are_the_whole() {
+    let (k, _) = grid_laplacian(37, 23, 0.0);
+    // All of it, and two pieces that do not hang together.
+    let all: Vec<u32> = (0..k.n() as u32).collect();
+    let apart: Vec<u32> = all.iter().copied().filter(|i| i % 37 != 11).collect();
+    for interior in [&all[..], &apart, &all[..20], &all[..1], &[]] {
+        let whole = nested_dissection(&k, interior, None);
+        for ranks in [1, 2, 3, 7, 64, 500] {
+            let parts = (0..ranks).map(|rank| part_of_dissection(&k, interior, rank, ranks));
+            assert_eq!(parts.collect::<Vec<_>>().concat(), whole, "{ranks} ranks");
+        }
+    }
+}

@@ -1,9 +1,9 @@
 //! Unit tests of `src/feti/projector/hidden.rs`.
 
 use super::*;
-use crate::feti::projector::gram::Shape;
 use crate::feti::projector::pattern::Pattern;
 use crate::feti::projector::rows::Rows;
+use crate::feti::projector::shape::Shape;
 use crate::testing::with_session;
 
 /// Bodies with two motions each, more than dense algebra is for: a chain, and a last one that meets them all, so that

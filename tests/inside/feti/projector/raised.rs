@@ -1,10 +1,10 @@
 //! Unit tests of `src/feti/projector/raised.rs`.
 
 use super::*;
-use crate::feti::projector::gram::Shape;
 use crate::feti::projector::numbers::Numbers;
 use crate::feti::projector::pattern::Pattern;
 use crate::feti::projector::rows::Rows;
+use crate::feti::projector::shape::Shape;
 use crate::testing::with_session;
 
 /// Bodies in a row, with two motions each: more motions than dense algebra is for.

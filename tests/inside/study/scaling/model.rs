@@ -24,7 +24,7 @@ fn point(n: f64, subdomains: f64) -> Point {
         kernels: n - 1.0,
         ..Work::default()
     };
-    let local = terms(5, CACHE, &work);
+    let local = terms(7, CACHE, &work);
     let local = local.iter().zip(KNOWN).map(|(x, c)| c * x).sum();
     Point {
         series: Series::Bodies,
@@ -41,7 +41,8 @@ fn point(n: f64, subdomains: f64) -> Point {
         steps: 1,
         kappa: None,
         setup: SetupSeconds {
-            natural: 1e-8 * work.kernels * n.log2() + 5e-9 * work.kernels.powf(1.5),
+            factor: 5e-9 * work.kernels.powf(1.5),
+            order: 1e-8 * work.kernels * n.log2(),
             ..SetupSeconds::default()
         },
         iteration: IterationSeconds {
@@ -82,17 +83,16 @@ fn points() -> Vec<Point> {
 fn known_costs_and_the_size_of_the_cache_are_recovered() {
     let model = Model::fit(&points());
     assert!((model.cache / CACHE - 1.0).abs() < 1e-12, "{}", model.cache);
-    for (found, known) in model.laws[5].seconds.iter().zip(KNOWN) {
+    for (found, known) in model.laws[7].seconds.iter().zip(KNOWN) {
         assert!(
             (found - known).abs() < 1e-6 * KNOWN[0].min(known + 1e-14),
             "{found} {known}"
         );
     }
-    let natural = &model.laws[3];
-    assert!(
-        (natural.seconds[2] / 5e-9 - 1.0).abs() < 1e-6,
-        "{natural:?}"
-    );
+    let factor = &model.laws[4];
+    assert!((factor.seconds[1] / 5e-9 - 1.0).abs() < 1e-6, "{factor:?}");
+    let order = &model.laws[5];
+    assert!((order.seconds[1] / 1e-8 - 1.0).abs() < 1e-6, "{order:?}");
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn messages_come_on_top() {
     assert_eq!(alone.iteration.reduction, 0.0);
     assert_eq!(many.iteration.local, alone.iteration.local);
     // An all-reduce of 9 r numbers in the set-up: few motions are factored by every rank.
-    let more = many.setup.natural - alone.setup.natural;
+    let more = many.setup.factor - alone.setup.factor;
     assert!((more - net.all_reduce(1024.0, 8.0 * 63.0)).abs() < 1e-15);
     let total = many.setup.sum() + 5.0 * many.iteration.sum() + many.outside;
     assert_eq!(many.total(5.0), total);
