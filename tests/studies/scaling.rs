@@ -124,7 +124,7 @@ fn positive(x: f64) -> bool {
 
 /// Every phase has a law with its residuals, and every run has the deviation of the model.
 fn fits(report: &ScalingReport) {
-    assert_eq!(report.model.laws.len(), 11);
+    assert_eq!(report.model.laws.len(), 13);
     for law in &report.model.laws {
         assert_eq!(law.terms.len(), law.seconds.len());
         assert!(
@@ -165,7 +165,8 @@ fn predicts(report: &ScalingReport) {
         let ranks: Vec<usize> = prediction.rows.iter().map(|r| r.ranks).collect();
         assert_eq!(ranks, RANKS);
         for pair in prediction.rows.windows(2) {
-            assert!(positive(pair[0].total) && pair[1].total >= pair[0].total);
+            // Where ranks begin to share the factor, messages take the place of all-reduces.
+            assert!(positive(pair[0].total) && pair[1].total >= 0.9 * pair[0].total);
             assert!(pair[1].kernels > pair[0].kernels);
         }
         for row in &prediction.rows {
@@ -176,10 +177,10 @@ fn predicts(report: &ScalingReport) {
             assert!(positive(row.without_kernels) && row.without_kernels <= row.total);
         }
         assert!(!prediction.limits.is_empty() && !prediction.iteration_limits.is_empty());
-        // A sparse factor of order 10⁶ has some 2 GB, of which a rank has its subtree and the top.
+        // A sparse factor of order 10⁶ has some 2 GB, of which a rank has its part; pattern and order every rank has.
         assert_eq!(prediction.full_at, None);
         let last = prediction.rows.last().map(|r| r.replicated_bytes);
-        assert!(last.is_some_and(|b| (4e8..7e8).contains(&b)), "{last:?}");
+        assert!(last.is_some_and(|b| (2e8..5e8).contains(&b)), "{last:?}");
     }
 }
 
