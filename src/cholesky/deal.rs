@@ -71,9 +71,9 @@ fn home_of_subtrees(fronts: &[Front], homes: &[u32]) -> Vec<u32> {
     out
 }
 
-/// Deals out the fronts: of the cuts through the tree into at least as many subtrees as there are ranks, the one with
-/// which the root is eliminated first. A subtree goes to the rank where most of its rows are at home, by `homes`,
-/// unless that rank has more than its share already.
+/// Deals out the fronts: of the cuts through the tree into at least as many subtrees as there are ranks, where there
+/// are so many, the one with which a factorisation and its solves are done first. A subtree goes to the rank where most
+/// of its rows are at home, by `homes`, unless that rank has more than its share already.
 pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
     let home = home_of_subtrees(fronts, homes);
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); fronts.len()];

@@ -56,13 +56,11 @@ pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> 
 fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid, load: &[f64]) -> (Csr, Vec<f64>) {
     let cells = Cells::new(mesh, grid);
     let n = mesh.n_free();
-    // Pairs of neighbours in a row of m nodes are 3 m - 2, each node with itself included.
-    let pairs = grid.nodes().map(|m| 3 * m - 2);
-    let most = C * C * pairs.iter().product::<usize>();
+    let width = C * 3_usize.pow(mesh.dim as u32);
     let mut k = Csr {
         row_ptr: Vec::with_capacity(n + 1),
-        col: Vec::with_capacity(most),
-        val: Vec::with_capacity(most),
+        col: Vec::with_capacity(width * n),
+        val: Vec::with_capacity(width * n),
     };
     k.row_ptr.push(0);
     let mut f = Vec::with_capacity(n);

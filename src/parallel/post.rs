@@ -44,6 +44,9 @@ impl Post<'_, '_> {
     /// Lets MPI work on what has not been received yet. A long message moves on only while its sender is in MPI, where
     /// the hardware does not fetch it: a rank that computes for long calls this now and then.
     pub fn progress(&mut self) {
+        if self.sent.is_empty() {
+            return;
+        }
         let sent = std::mem::take(&mut self.sent);
         let left = sent.into_iter().filter_map(|request| request.test().err());
         self.sent = left.collect();

@@ -159,8 +159,8 @@ impl Gram {
             diagonal[dof as usize] = a.get(dof as usize, dof as usize);
         }
         sum_all(team.comm(), &mut diagonal);
-        let own: Vec<usize> = team.own_dofs().map(|dof| dof as usize).collect();
-        let mut scale = scale(&mut a, &diagonal, &own);
+        let own = team.own_dofs().map(|dof| dof as usize);
+        let mut scale = scale(&mut a, &diagonal, own);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, team, &a, &scale);
         let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
@@ -323,15 +323,15 @@ fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A; returns 1/D, one where the diagonal vanishes.
 pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
-    let (diagonal, all) = (a.diagonal(), (0..a.n()).collect::<Vec<usize>>());
-    scale(a, &diagonal, &all)
+    let (diagonal, all) = (a.diagonal(), 0..a.n());
+    scale(a, &diagonal, all)
 }
 
 /// The same with this diagonal, in these rows.
-fn scale(a: &mut Csr, diagonal: &[f64], rows: &[usize]) -> Vec<f64> {
+fn scale(a: &mut Csr, diagonal: &[f64], rows: impl Iterator<Item = usize>) -> Vec<f64> {
     let of = |&d: &f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
     let scale: Vec<f64> = diagonal.iter().map(of).collect();
-    for &i in rows {
+    for i in rows {
         for k in a.row_ptr[i]..a.row_ptr[i + 1] {
             a.val[k] = a.val[k] * scale[i] * scale[a.col[k] as usize];
         }

@@ -112,8 +112,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
     let named = phases.map(|p| spent.of(p));
     let rest = solver.facts().setup_seconds - named.iter().sum::<f64>();
     let [a, b, c, d] = named;
-    let parts = [Phase::NaturalFactor, Phase::NaturalOrder].map(|p| spent.of(p));
-    let [factor, order] = parts;
+    let [factor, order] = [Phase::NaturalFactor, Phase::NaturalOrder].map(|p| spent.of(p));
     let natural = (d - factor - order).max(0.0);
     let mut setup = [a, b, c, natural, factor, order, rest.max(0.0)];
     max_all(comm, &mut setup);

@@ -15,7 +15,8 @@ use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
 use crate::feti::projector::gram::FEW;
 
-/// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
+/// Projections in an iteration, each with an all-reduce of r numbers or, of many, with messages up and down the tree: P
+/// and Pᵀ around F and around M⁻¹.
 const PROJECTIONS: f64 = 4.0;
 
 /// Entries in a row of Gᵀ G: a body of a plane grid and its eight neighbours, scalar.

@@ -48,7 +48,7 @@ quantities! {
         natural: "GᵀQG",
         /// The factor of Gᵀ G.
         factor: "factor",
-        /// Pattern and order of Gᵀ Q G, which every rank finds for all bodies.
+        /// Order and pattern of Gᵀ Q G, which every rank has for all bodies.
         order: "order",
         /// Everything else: who shares what, B and B_D, kernels.
         rest: "rest",

@@ -186,11 +186,11 @@ fn limits(p: &Prediction) -> String {
     };
     out += &match p.full_at {
         Some(at) => format!(
-            ".\nFrom {at} ranks on GᵀQG and its factor, which every rank has, need more than 4 GB per \
+            ".\nFrom {at} ranks on GᵀQG and a rank's part of its factor need more than 4 GB per \
              rank: beyond that this set-up is not possible, whatever it takes.\n"
         ),
         None => format!(
-            ".\nGᵀQG and its factor, which every rank has, need less than 4 GB per rank up to {last} ranks.\n"
+            ".\nGᵀQG and a rank's part of its factor need less than 4 GB per rank up to {last} ranks.\n"
         ),
     };
     out
