@@ -66,7 +66,7 @@ pub(super) fn report(
         bodies: scene.n_bodies(),
         floating_bodies: facts.floating_bodies,
         subdomains: scene.n_subdomains(),
-        dofs: scene.plan().dofs,
+        dofs: scene.dofs(),
         multipliers: json::Multipliers {
             local: facts.multipliers_local,
             global: facts.multipliers_global,

@@ -37,7 +37,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
     if DeckScenes::is_deck(&args.scene) {
         return run_deck(session, &args, &destination);
     }
-    let scene = distribution::load(session, &args.scene)?;
+    let scene = distribution::load_part(session, &args.scene)?;
     on_first_rank(session, || {
         destination.prepare()?;
         destination.print(&lines(&scene.notes))

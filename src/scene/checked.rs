@@ -2,7 +2,7 @@
 
 use super::body::{bounds_of, Body};
 use super::deck::DeckScenes;
-use super::geometry::interface::Interface;
+use super::geometry::interface::{mostly_tied, Interface};
 use super::geometry::matching::Matching;
 use super::geometry::{loose, overlap};
 use super::model::expr::Expr;
@@ -10,6 +10,7 @@ use super::model::grid::GridSpec;
 use super::model::joints::Pair;
 use super::model::spec::{lee, ByDefault, Faces, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
+use super::part::{self, Part};
 use super::renewal::{may_renew, Renewal};
 use super::rows::all::{Joined, Rows};
 use super::rows::equations::Equation;
@@ -83,6 +84,12 @@ pub struct Scene {
     pub(crate) renewable: bool,
     /// What load steps renew contacts from, if they do.
     pub(super) renewal: Option<Arc<Renewal>>,
+    /// Whether more nodes of interfaces are tied than in contact.
+    pub(super) mostly_tied: bool,
+    /// Whether it has all points, and all nodes of interfaces.
+    pub(super) is_whole: bool,
+    /// Whether another rank has inequalities; set where this one has read its part alone.
+    pub(super) contact_elsewhere: bool,
     /// Number of subdomains.
     n_subdomains: usize,
 }
@@ -93,14 +100,14 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
-        Scene::load_if(path.as_ref(), |_| Ok(()))
+        Scene::load_if(path.as_ref(), |_| Ok(Part::WHOLE))
     }
 
-    /// [`Scene::load`], if `fits` has no objection to what was read. It is asked before anything is made from that; of
-    /// a deck, when its bodies are known.
+    /// [`Scene::load`] of the part that `fits` wants of what was read, unless it objects. It is asked before anything
+    /// is made from that. A deck is read as a whole.
     pub(super) fn load_if(
         path: &Path,
-        fits: impl FnOnce(&SceneSpec) -> Result<()>,
+        fits: impl FnOnce(&SceneSpec) -> Result<Part>,
     ) -> Result<Scene> {
         let file = path.display().to_string();
         if DeckScenes::is_deck(path) {
@@ -109,8 +116,8 @@ impl Scene {
         }
         let text = text(path, "scene")?;
         let spec = read::read(&file, &text)?;
-        fits(&spec)?;
-        Scene::new(spec)
+        let part = fits(&spec)?;
+        Scene::part(spec, part)
     }
 
     /// Checks the scene in `text`; `file` names it in messages.
@@ -126,7 +133,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for overlapping bodies, non-matching nodes on tied faces, values out of
     /// range, ….
-    pub fn new(mut spec: SceneSpec) -> Result<Scene> {
+    pub fn new(spec: SceneSpec) -> Result<Scene> {
+        Scene::part(spec, Part::WHOLE)
+    }
+
+    /// [`Scene::new`] with the rows of a part, and with the nodes of interfaces that it needs.
+    fn part(mut spec: SceneSpec, part: Part) -> Result<Scene> {
         validate::check(&spec)?;
         let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
@@ -165,11 +177,17 @@ impl Scene {
             spec.contacts.len(),
             Standing::START,
         )?;
+        let part = match written {
+            Some(_) => Part::WHOLE,
+            None => part.of(&spec, &interfaces, &obstacles),
+        };
+        let owns = part.owns(&bodies);
         let joined = Joined {
             spec: &spec,
             interfaces: &mut interfaces,
             obstacles: &obstacles,
             known: Vec::new(),
+            owns: &owns,
         };
         let Rows {
             points,
@@ -193,6 +211,8 @@ impl Scene {
         let deep = overlap::sentences(&bodies, &interfaces, &obstacles, &spec.form);
         spec.notes.extend(deep);
         validate::check_unknowns(&bodies)?;
+        let tied = mostly_tied(&interfaces);
+        part::forget(&mut interfaces, &bodies, &points, &owns);
         Ok(Scene {
             options: spec.options,
             title: spec.title,
@@ -209,6 +229,9 @@ impl Scene {
             notes: spec.notes,
             renewable: may_renew(&spec.form, &spec.contacts),
             renewal,
+            mostly_tied: tied,
+            is_whole: part == Part::WHOLE,
+            contact_elsewhere: false,
             n_subdomains: first_subdomain,
         })
     }
@@ -249,6 +272,12 @@ impl Scene {
     /// Number of bodies.
     pub fn n_bodies(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Free degrees of freedom, counted once in every body.
+    pub fn dofs(&self) -> usize {
+        let free = |b: &Body| b.mesh().n_nodes() * b.components - b.prescribed.len();
+        self.bodies.iter().map(free).sum()
     }
 
     /// Number of subdomains of all bodies.

@@ -1,19 +1,33 @@
 //! The distribution of subdomains over ranks, and this rank's part of a scene.
 
-use std::ops::Range;
 use std::path::Path;
 
 use super::checked::Scene;
 use super::fits;
+use super::model::spec::SceneSpec;
+use super::part::Part;
 use crate::error::{Error, Result};
-use crate::mesh::contiguous_share;
 use crate::parallel::exchange::gather_all;
 use crate::petsc::{Options, Session};
 use crate::substructures::Substructures;
 
 /// Reads the scene and puts its options into the database, below those of the user. Collective.
 pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
-    let scene = session.agree(fits::load(session, path))?;
+    given(session, path, fits::load(session, path))
+}
+
+/// [`load`] for a program that needs the rows of the rank's own points alone.
+pub(crate) fn load_part(session: &Session, path: &Path) -> Result<Scene> {
+    let read = fits::load_part(session, path, |spec| part(session, spec));
+    let mut scene = given(session, path, read)?;
+    let contact = gather_all(session.comm(), &[u64::from(scene.has_contact())]);
+    scene.contact_elsewhere = contact.concat().contains(&1);
+    Ok(scene)
+}
+
+/// The scene that all ranks have read, with its options in the database.
+fn given(session: &Session, path: &Path, read: Result<Scene>) -> Result<Scene> {
+    let scene = session.agree(read)?;
     same_on_all_ranks(session, path, &scene)?;
     set_options(session, &scene)?;
     Ok(scene)
@@ -85,68 +99,39 @@ fn set_options<'a>(session: &Session, scene: &'a Scene) -> Result<Vec<&'a str>> 
 /// Whether subdomains are dealt to ranks one after the other in turn, and not in contiguous blocks. Reads the option
 /// `-fetifeti_distribution`.
 pub(crate) fn is_cyclic(session: &Session) -> Result<bool> {
-    let help = "how subdomains are dealt to ranks";
-    let options = Options::new(session, "fetifeti_");
-    Ok(options.choice("distribution", &["block", "cyclic"], 0, help)? == 1)
+    is_cyclic_unless(session, None)
 }
 
-/// A predicate: whether this rank owns a subdomain, according to the options.
-pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
-    let cyclic = is_cyclic(session)?;
-    let (size, rank) = (session.size(), session.rank());
-    let share = share(scene, size, rank);
-    Ok(move |s: usize| match cyclic {
-        true => s % size == rank,
-        false => share.contains(&s),
+/// [`is_cyclic`] where a scene may have a value that is not in the database yet.
+fn is_cyclic_unless(session: &Session, value: Option<&str>) -> Result<bool> {
+    let help = "how subdomains are dealt to ranks";
+    let names = ["block", "cyclic"];
+    let default = names.iter().position(|name| Some(*name) == value);
+    let options = Options::new(session, "fetifeti_");
+    Ok(options.choice("distribution", &names, default.unwrap_or(0), help)? == 1)
+}
+
+/// The part of this rank of what `spec` describes.
+fn part(session: &Session, spec: &SceneSpec) -> Result<Part> {
+    let own = spec.options.iter().find(|(key, _)| key == DISTRIBUTION);
+    Ok(Part {
+        cyclic: is_cyclic_unless(session, own.map(|o| o.1.as_str()))?,
+        ranks: session.size(),
+        rank: session.rank(),
     })
 }
 
-/// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may
-/// lie on several ranks.
-fn share(scene: &Scene, ranks: usize, rank: usize) -> Range<usize> {
-    let n = scene.n_subdomains();
-    if ranks == 1 || scene.bodies.iter().all(|b| b.mesh().cells().is_none()) {
-        return contiguous_share(n, ranks, rank);
-    }
-    let works = scene.bodies.iter().flat_map(|body| {
-        let nodes = |s: usize| match body.mesh().cells() {
-            Some(mesh) => mesh.parts.nodes(s).len(),
-            None => body.mesh().subdomain_nodes(s).len(),
-        };
-        let count = body.mesh().n_subdomains();
-        (0..count).map(move |s| ((body.components * nodes(s)) as f64).powf(WORK))
-    });
-    by_work(&works.collect::<Vec<f64>>(), ranks, rank)
-}
+/// The option that [`is_cyclic`] reads.
+const DISTRIBUTION: &str = "fetifeti_distribution";
 
-/// The work of a subdomain grows as this power of its unknowns: solves as the power 1.2 to 1.4, factorisations as 1.5
-/// in the plane and 2 in space.
-const WORK: f64 = 1.5;
-
-/// The items of a rank if all are dealt out in contiguous blocks of about equal work. Every rank gets one if there are
-/// enough.
-fn by_work(works: &[f64], ranks: usize, rank: usize) -> Range<usize> {
-    let n = works.len();
-    if n <= ranks {
-        return contiguous_share(n, ranks, rank);
-    }
-    let total: f64 = works.iter().sum();
-    // An item belongs to the block in which its middle lies.
-    let mut done = 0.0;
-    let middles: Vec<f64> = works
-        .iter()
-        .map(|w| {
-            done += w;
-            (done - 0.5 * w) / total
-        })
-        .collect();
-    let start = |r: usize| {
-        let bound = r as f64 / ranks as f64;
-        middles
-            .partition_point(|m| *m < bound)
-            .clamp(r, n - (ranks - r))
+/// A predicate: whether this rank owns a subdomain, according to the options.
+pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
+    let part = Part {
+        cyclic: is_cyclic(session)?,
+        ranks: session.size(),
+        rank: session.rank(),
     };
-    start(rank)..start(rank + 1)
+    Ok(part.owns(&scene.bodies))
 }
 
 /// This rank's part of the scene, assembled. Collective.
@@ -185,7 +170,3 @@ fn measurable(title: &str, built: Substructures) -> Result<Substructures> {
 
 /// Sums of squares up to this are far from overflow.
 const LARGEST_SQUARED: f64 = 1e145;
-
-#[cfg(test)]
-#[path = "../../tests/inside/scene/distribution.rs"]
-mod tests;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::checked::Scene;
-use super::geometry::interface::Link;
 use super::model::spec::{self, ByDefault, Faces, SceneSpec};
 use super::need::Need;
+use super::part::Part;
 use super::read::MOST_IN_A_ROW;
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
@@ -29,6 +29,15 @@ enum Until {
 /// # Errors
 /// Those of [`Scene::load`]; [`Error::Environment`] with the estimate, the memory that there is, and what to change.
 pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
+    load_part(session, path, |_| Ok(Part::WHOLE))
+}
+
+/// [`load`] of a part.
+pub(super) fn load_part(
+    session: &Session,
+    path: &Path,
+    part: impl FnOnce(&SceneSpec) -> Result<Part>,
+) -> Result<Scene> {
     let name = path.display().to_string();
     Scene::load_if(path, |spec| {
         let own = spec.options.iter().find(|(key, _)| key == LIMIT);
@@ -38,7 +47,8 @@ pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
             &of_spec(spec),
             Until::Assembled,
             own.map(|o| o.1.as_str()),
-        )
+        )?;
+        part(spec)
     })
 }
 
@@ -118,10 +128,8 @@ fn ranks_here(session: &Session) -> usize {
 }
 
 fn of_scene(scene: &Scene) -> Need {
-    let nodes = || scene.interfaces.iter().flat_map(|i| &i.shared);
-    let tied = nodes().filter(|n| n.link == Link::Tied).count();
-    let tied = tied > nodes().filter(|n| n.link.is_contact()).count();
-    Need::of(scene.bodies.iter().map(|b| &b.spec), &scene.form, tied)
+    let bodies = scene.bodies.iter().map(|b| &b.spec);
+    Need::of(bodies, &scene.form, scene.mostly_tied)
 }
 
 fn of_spec(spec: &SceneSpec) -> Need {

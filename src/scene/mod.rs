@@ -7,9 +7,11 @@
 //!                                                      └─> Plan            (what will be built)
 //! ```
 //!
-//! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. A scene is small and is
-//! the same on every rank: it holds data on the boundaries of bodies only, O(boundary nodes). Matrices are assembled
-//! subdomain by subdomain, on the rank that owns the subdomain. Coefficients in array files are read there, too.
+//! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. It holds data on the
+//! boundaries of bodies only, O(boundary nodes). A program that solves it on several ranks needs no more on each than
+//! the rows of the rank's own points: it reads a part (`part`), in which bodies and pairs of bodies are all there, with
+//! the numbers of the whole. Matrices are assembled subdomain by subdomain, on the rank that owns the subdomain.
+//! Coefficients in array files are read there, too.
 
 mod axis;
 mod body;
@@ -30,6 +32,7 @@ pub(crate) mod model;
 #[cfg(feature = "cli")]
 pub(crate) mod need;
 mod numbering;
+mod part;
 mod plan;
 mod quantity;
 mod read;

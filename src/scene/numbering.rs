@@ -31,6 +31,7 @@ pub struct Numbering {
 impl Numbering {
     /// The numbering of `scene`.
     pub fn new(scene: &Scene) -> Numbering {
+        debug_assert!(scene.is_whole, "a part does not have all ties");
         let bodies: Vec<(Mesh, u64, usize)> = scene
             .bodies
             .iter()

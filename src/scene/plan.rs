@@ -93,6 +93,7 @@ pub struct Plan {
 impl Scene {
     /// Counts the sizes.
     pub fn plan(&self) -> Plan {
+        debug_assert!(self.is_whole, "a part has no counts of the whole");
         let bodies: Vec<BodyPlan> = (0..self.n_bodies()).map(|b| self.body_plan(b)).collect();
         let interfaces = self
             .interfaces
@@ -112,7 +113,7 @@ impl Scene {
             interfaces,
             subdomains: self.n_subdomains(),
             elements: self.bodies.iter().map(|b| b.mesh().n_elements()).sum(),
-            dofs: bodies.iter().map(|b| b.dofs).sum(),
+            dofs: self.dofs(),
             assembled: Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),

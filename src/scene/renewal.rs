@@ -225,6 +225,7 @@ impl Renewal {
             interfaces: &mut interfaces,
             obstacles: &obstacles,
             known: self.rows.clone(),
+            owns: &|_| true,
         };
         let rows = joined.rows(bodies, steps, Some(step))?;
         obstacles.iter_mut().for_each(Obstacle::finish);

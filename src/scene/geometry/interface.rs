@@ -84,7 +84,22 @@ pub struct Interface {
     pub mortar: Option<Mortar>,
 }
 
+/// Whether more nodes are tied than in contact.
+pub(crate) fn mostly_tied(interfaces: &[Interface]) -> bool {
+    let links = || interfaces.iter().flat_map(|i| &i.shared).map(|s| s.link);
+    let tied = links().filter(|l| *l == Link::Tied).count();
+    tied > links().filter(Link::is_contact).count()
+}
+
 impl Interface {
+    /// Drops what it knows node by node. One bound stays where there are some: it says that there is contact.
+    pub(crate) fn forget_nodes(&mut self) {
+        (self.shared, self.unmatched) = (Vec::new(), Vec::new());
+        (self.normals, self.distances) = (Vec::new(), Vec::new());
+        self.adjusted = BTreeMap::new();
+        self.limits = Limits::new(self.limits.all().iter().take(1).copied().collect());
+    }
+
     /// Whether some of its nodes are in contact.
     pub fn has_contact(&self) -> bool {
         !self.limits.all().is_empty()

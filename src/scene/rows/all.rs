@@ -11,6 +11,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::interface::Interface;
 use crate::scene::model::spec::SceneSpec;
 use crate::scene::model::steps::{Factors, Steps};
+use std::collections::HashSet;
 
 /// The rows, and sentences about them.
 pub(crate) struct Rows {
@@ -27,6 +28,9 @@ pub(crate) struct Joined<'a> {
     pub obstacles: &'a [Obstacle],
     /// Rows between sides whose nodes do not match that are known already.
     pub known: Vec<MortarRow>,
+    /// The subdomains at whose points rows are wanted. All are, where rows lead from point to point: where there are
+    /// equations, or sides whose nodes do not match.
+    pub owns: &'a dyn Fn(usize) -> bool,
 }
 
 impl Joined<'_> {
@@ -41,12 +45,19 @@ impl Joined<'_> {
         step: Option<usize>,
     ) -> Result<Rows> {
         let spec = self.spec;
-        let mut points = points::collect(bodies, self.interfaces)?;
+        // Rows beside obstacles are added to points that are known.
+        let beside: HashSet<usize> = self.obstacles.iter().map(|o| o.body).collect();
+        let wanted = |p: &Point| {
+            (self.owns)(p.subdomain) || p.members.iter().any(|m| beside.contains(&m.body))
+        };
+        let mut points = points::collect(bodies, self.interfaces, &wanted)?;
         let mut checks = Checks::new(bodies, self.obstacles, spec, steps);
         if let Some(step) = step {
             checks.factors = vec![Factors::of(steps, step)?];
         }
         checks.apply(&mut points)?;
+        points.retain(|p| (self.owns)(p.subdomain));
+        points.shrink_to_fit();
         let (mut mortar, notes) = mortar::collect(
             bodies,
             &spec.form,

@@ -28,6 +28,7 @@ pub mod equations;
 mod facing;
 pub mod facing_surfaces;
 pub mod links;
+mod meeting;
 pub mod mortar;
 pub mod mortar_row;
 pub mod obstacles;

@@ -1,5 +1,6 @@
 //! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
 
+use super::meeting::{Meeting, Pair};
 use crate::error::{Error, Result};
 use crate::linalg::union_find::UnionFind;
 use crate::scene::body::Body;
@@ -58,15 +59,27 @@ pub struct Inequality {
     pub given: [f64; 2],
 }
 
-/// The points of a scene. Nodes that are tied to a given value are added to the given nodes of their body.
-pub(crate) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<Vec<Point>> {
-    let mut points = coinciding(bodies, interfaces);
+/// The points of a scene that satisfy `wanted`. Nodes that are tied to a given value are added to the given nodes of
+/// their body, at all points.
+pub(crate) fn collect(
+    bodies: &mut [Body],
+    interfaces: &[Interface],
+    wanted: &dyn Fn(&Point) -> bool,
+) -> Result<Vec<Point>> {
+    let mut out: Vec<Point> = Vec::new();
     let mut inherited = Vec::new();
-    for (point, links) in &mut points {
-        let components = bodies[point.members[0].body].components;
-        close(point, links, interfaces, components);
+    let meeting = Meeting::of(bodies, interfaces);
+    for (members, met) in meeting.sets() {
+        let mut point = BodyNode::point(members.to_vec(), bodies);
+        let mut pairs: Vec<Pair> = met.collect();
+        point.tied_to = joined(members.len(), &pairs, interfaces, &|l| l == Link::Tied);
+        let components = bodies[members[0].body].components;
         for c in 0..components {
-            prescribe(bodies, point, c, &mut inherited)?;
+            prescribe(bodies, &point, c, &mut inherited)?;
+        }
+        if wanted(&point) {
+            add_rows(&mut point, &mut pairs, interfaces, components);
+            out.push(point);
         }
     }
     for (BodyNode { body, node }, component, value) in inherited {
@@ -77,7 +90,6 @@ pub(crate) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<V
     for body in bodies.iter_mut() {
         body.prescribed.sort_by_key(|&(dof, _)| dof);
     }
-    let mut out: Vec<Point> = points.into_iter().map(|(point, _)| point).collect();
     for Point { members, rows, .. } in &mut out {
         rows.retain(|row| {
             let ends = || row.members.iter().flatten().map(|&m| members[m]);
@@ -193,102 +205,29 @@ impl BodyNode {
     }
 }
 
-/// Two members of a point that share a node of an interface: the interface, and the index into its `shared`.
-struct Shared {
-    members: [usize; 2],
-    interface: usize,
-    node: usize,
+/// For each of `n` members the lowest one to which pairs lead whose links satisfy `counts`.
+fn joined(
+    n: usize,
+    pairs: &[Pair],
+    interfaces: &[Interface],
+    counts: &dyn Fn(Link) -> bool,
+) -> Vec<usize> {
+    let mut sets = UnionFind::new(n);
+    for pair in pairs.iter().filter(|p| counts(p.link(interfaces))) {
+        sets.join(pair.members[0], pair.members[1]);
+    }
+    (0..n).map(|m| sets.find(m)).collect()
 }
 
-/// The number of a node that has none.
-const NONE: u32 = u32::MAX;
-
-/// Groups the shared nodes of all interfaces by position, in order of `block`.
-fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shared>)> {
-    // By body the number of each node; empty for bodies without an interface.
-    let mut number: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
-    let mut nodes: Vec<BodyNode> = Vec::new();
-    let mut sets = UnionFind::default();
-    let mut pairs: Vec<Shared> = Vec::new();
-    let all = interfaces.iter().enumerate();
-    for (i, interface) in all.filter(|(_, i)| i.mortar.is_none()) {
-        for body in interface
-            .bodies
-            .into_iter()
-            .filter(|_| !interface.shared.is_empty())
-        {
-            if number[body].is_empty() {
-                number[body] = vec![NONE; bodies[body].mesh().n_nodes()];
-            }
-        }
-        for (k, shared) in interface.shared.iter().enumerate() {
-            let members = [0, 1].map(|k| {
-                let (body, node) = (interface.bodies[k], shared.nodes[k]);
-                let known = &mut number[body][node];
-                if *known == NONE {
-                    *known = sets.add() as u32;
-                    nodes.push(BodyNode { body, node });
-                }
-                *known as usize
-            });
-            sets.join(members[0], members[1]);
-            pairs.push(Shared {
-                members,
-                interface: i,
-                node: k,
-            });
-        }
-    }
-    // The members and pairs of each set; the lowest member of a set comes first.
-    let mut place = vec![NONE; nodes.len()];
-    let mut found: Vec<(Vec<BodyNode>, Vec<Shared>)> = Vec::new();
-    for (id, member) in nodes.iter().enumerate() {
-        let root = sets.find(id);
-        if root == id {
-            place[id] = found.len() as u32;
-            found.push(Default::default());
-        }
-        found[place[root] as usize].0.push(*member);
-    }
-    for pair in pairs {
-        let root = sets.find(pair.members[0]);
-        found[place[root] as usize].1.push(pair);
-    }
-    let mut out: Vec<(Point, Vec<Shared>)> = found
-        .into_iter()
-        .map(|(mut members, mut links)| {
-            members.sort_by_key(|m| m.body);
-            for pair in &mut links {
-                pair.members = pair.members.map(|id| {
-                    let node = nodes[id];
-                    let place = members.iter().position(|other| *other == node);
-                    place.expect("both nodes of a pair are members of its point")
-                });
-            }
-            (BodyNode::point(members, bodies), links)
-        })
-        .collect();
-    out.sort_by_key(|(point, _)| point.block);
-    out
-}
-
-/// Finds the tied members and the pairs that get a row; contacts without effect are dropped later.
-fn close(point: &mut Point, pairs: &mut [Shared], interfaces: &[Interface], components: usize) {
-    let link = |p: &Shared| interfaces[p.interface].shared[p.node].link;
-    let joined = |counts: &dyn Fn(Link) -> bool| {
-        let mut sets = UnionFind::new(point.members.len());
-        for pair in pairs.iter().filter(|p| counts(link(p))) {
-            sets.join(pair.members[0], pair.members[1]);
-        }
-        let lowest = |m| sets.find(m);
-        (0..point.members.len()).map(lowest).collect::<Vec<usize>>()
-    };
-    point.tied_to = joined(&|l| l == Link::Tied);
-    let may_join = joined(&|l| matches!(l, Link::Tied | Link::Open));
+/// Adds a row for each pair that gets one; contacts without effect are dropped later.
+fn add_rows(point: &mut Point, pairs: &mut [Pair], interfaces: &[Interface], components: usize) {
+    let may_join = joined(point.members.len(), pairs, interfaces, &|l| {
+        matches!(l, Link::Tied | Link::Open)
+    });
     pairs.sort_by_key(|p| p.members);
     for pair in pairs.iter() {
         let interface = &interfaces[pair.interface];
-        let (link, [a, b]) = (link(pair), pair.members);
+        let (link, [a, b]) = (pair.link(interfaces), pair.members);
         let contact = link.is_contact();
         let corner = interface.shape == Shape::Corner && !contact;
         let by = |sets: &[usize]| corner && sets[a] == sets[b];

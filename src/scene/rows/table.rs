@@ -91,7 +91,8 @@ impl Scene {
 
     /// Whether there is an inequality; the solver then runs an outer loop.
     pub fn has_contact(&self) -> bool {
-        self.mortar.iter().any(|m| m.inequality.is_some())
+        self.contact_elsewhere
+            || self.mortar.iter().any(|m| m.inequality.is_some())
             || self
                 .each_row(|_| true)
                 .any(|(_, row)| row.inequality.is_some())

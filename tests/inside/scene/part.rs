@@ -1,6 +1,8 @@
-//! Unit tests of `src/scene/distribution.rs`.
+//! Unit tests of `src/scene/part.rs`.
 
 use super::*;
+use crate::Scene;
+use std::path::Path;
 
 /// The blocks of all ranks.
 fn blocks(works: &[f64], ranks: usize) -> Vec<Range<usize>> {
@@ -57,7 +59,7 @@ fn bodies_of_a_mesh_are_dealt_out_by_work() {
     let all: Vec<f64> = (0..scene.n_subdomains()).map(works).collect();
     let largest = all.iter().copied().fold(0.0, f64::max);
     let fair = all.iter().sum::<f64>() / 2.0;
-    let first: f64 = all[share(&scene, 2, 0)].iter().sum();
+    let first: f64 = all[share(&scene.bodies, 2, 0)].iter().sum();
     assert!(
         (first - fair).abs() <= 0.5 * largest,
         "{first} of {}",
@@ -67,6 +69,53 @@ fn bodies_of_a_mesh_are_dealt_out_by_work() {
     let boxes = Scene::load("examples/scenes/unequal_bodies.toml").expect("a scene");
     let n = boxes.n_subdomains();
     for rank in 0..3 {
-        assert_eq!(share(&boxes, 3, rank), contiguous_share(n, 3, rank));
+        assert_eq!(share(&boxes.bodies, 3, rank), contiguous_share(n, 3, rank));
+    }
+}
+
+#[test]
+fn parts_have_the_rows_of_the_whole() {
+    let files = [
+        "examples/scenes/poisson_2x2.toml",
+        "examples/scenes/partly_tied.toml",
+        "examples/scenes/unequal_bodies.toml",
+        "examples/scenes/obstacle.toml",
+        "examples/scenes/blocks_3d.toml",
+        "examples/scenes/spheres.toml",
+        "examples/scenes/mortar_2d.toml",
+    ];
+    for file in files {
+        let whole = Scene::load(file).expect(file);
+        assert!(whole.is_whole);
+        for ranks in [2, 3, 5] {
+            for cyclic in [false, true] {
+                let mut rows = 0;
+                for rank in 0..ranks {
+                    let wanted = Part {
+                        cyclic,
+                        ranks,
+                        rank,
+                    };
+                    let part = Scene::load_if(Path::new(file), |_| Ok(wanted)).expect(file);
+                    let owns = wanted.owns(&whole.bodies);
+                    let written = |s: &Scene| format!("{:?}", s.rows(&owns));
+                    assert_eq!(written(&part), written(&whole), "{file}");
+                    assert_eq!(part.dofs(), whole.dofs(), "{file}");
+                    let given = |s: &Scene| -> Vec<_> {
+                        s.bodies.iter().map(|b| b.prescribed.clone()).collect()
+                    };
+                    assert_eq!(given(&part), given(&whole), "{file}");
+                    assert_eq!(part.notes, whole.notes);
+                    let contact = |s: &Scene| s.sides_that_may_touch();
+                    assert_eq!(contact(&part), contact(&whole), "{file}");
+                    rows += part.rows(&owns).len();
+                    // Rows that lead from point to point need all points.
+                    assert_eq!(part.is_whole, file.contains("mortar"), "{file}");
+                    let all = part.rows(&|_| true).len();
+                    assert!(part.is_whole || all == part.rows(&owns).len());
+                }
+                assert_eq!(rows, whole.rows(&|_| true).len(), "{file}");
+            }
+        }
     }
 }

@@ -1,0 +1,130 @@
+//! The part of a scene that one rank needs: which subdomains it owns, and what their rows are made of.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use super::body::Body;
+use super::geometry::interface::Interface;
+use super::model::spec::SceneSpec;
+use super::rows::obstacles::Obstacle;
+use super::rows::points::Point;
+use crate::mesh::contiguous_share;
+use crate::substructures::RowSource;
+
+/// The part of one of several ranks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Part {
+    /// Whether subdomains are dealt out one after the other in turn, and not in contiguous blocks.
+    pub cyclic: bool,
+    /// The number of ranks.
+    pub ranks: usize,
+    /// The rank.
+    pub rank: usize,
+}
+
+impl Part {
+    /// All of a scene.
+    pub const WHOLE: Part = Part {
+        cyclic: false,
+        ranks: 1,
+        rank: 0,
+    };
+
+    /// This part, or the whole where rows lead from point to point, so that their blocks and owners follow from all of
+    /// them: where there are equations, or sides whose nodes do not match.
+    pub fn of(self, spec: &SceneSpec, interfaces: &[Interface], obstacles: &[Obstacle]) -> Part {
+        let chained = !spec.equations.is_empty()
+            || interfaces.iter().any(|i| i.mortar.is_some())
+            || obstacles.iter().any(|o| o.surface.is_some());
+        match chained {
+            true => Part::WHOLE,
+            false => self,
+        }
+    }
+
+    /// A predicate: whether the rank owns a subdomain.
+    pub fn owns(self, bodies: &[Body]) -> impl Fn(usize) -> bool + use<> {
+        let Part {
+            cyclic,
+            ranks,
+            rank,
+        } = self;
+        let share = share(bodies, ranks, rank);
+        move |s| match cyclic {
+            true => s % ranks == rank,
+            false => share.contains(&s),
+        }
+    }
+}
+
+/// Drops what interfaces know node by node, unless one of their bodies or a row at one of `points` needs it.
+pub(super) fn forget(
+    interfaces: &mut [Interface],
+    bodies: &[Body],
+    points: &[Point],
+    owns: &dyn Fn(usize) -> bool,
+) {
+    let own = |body: &usize| {
+        let first = bodies[*body].first_subdomain;
+        (first..first + bodies[*body].mesh().n_subdomains()).any(owns)
+    };
+    let rows = points.iter().flat_map(|p| &p.rows);
+    let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
+    for (k, interface) in interfaces.iter_mut().enumerate() {
+        if !interface.bodies.iter().any(own) && !used.contains(&RowSource::Interface(k)) {
+            interface.forget_nodes();
+        }
+    }
+}
+
+/// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may
+/// lie on several ranks.
+fn share(bodies: &[Body], ranks: usize, rank: usize) -> Range<usize> {
+    let n = bodies.iter().map(|b| b.mesh().n_subdomains()).sum();
+    if ranks == 1 || bodies.iter().all(|b| b.mesh().cells().is_none()) {
+        return contiguous_share(n, ranks, rank);
+    }
+    let works = bodies.iter().flat_map(|body| {
+        let nodes = |s: usize| match body.mesh().cells() {
+            Some(mesh) => mesh.parts.nodes(s).len(),
+            None => body.mesh().subdomain_nodes(s).len(),
+        };
+        let count = body.mesh().n_subdomains();
+        (0..count).map(move |s| ((body.components * nodes(s)) as f64).powf(WORK))
+    });
+    by_work(&works.collect::<Vec<f64>>(), ranks, rank)
+}
+
+/// The work of a subdomain grows as this power of its unknowns: solves as the power 1.2 to 1.4, factorisations as 1.5
+/// in the plane and 2 in space.
+const WORK: f64 = 1.5;
+
+/// The items of a rank if all are dealt out in contiguous blocks of about equal work. Every rank gets one if there are
+/// enough.
+fn by_work(works: &[f64], ranks: usize, rank: usize) -> Range<usize> {
+    let n = works.len();
+    if n <= ranks {
+        return contiguous_share(n, ranks, rank);
+    }
+    let total: f64 = works.iter().sum();
+    // An item belongs to the block in which its middle lies.
+    let mut done = 0.0;
+    let middles: Vec<f64> = works
+        .iter()
+        .map(|w| {
+            done += w;
+            (done - 0.5 * w) / total
+        })
+        .collect();
+    let start = |r: usize| {
+        let bound = r as f64 / ranks as f64;
+        middles
+            .partition_point(|m| *m < bound)
+            .clamp(r, n - (ranks - r))
+    };
+    start(rank)..start(rank + 1)
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/scene/part.rs"]
+mod tests;
