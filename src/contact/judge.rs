@@ -17,10 +17,26 @@ const NOISE: f64 = 3.0;
 /// largest displacement.
 pub const ROUNDING: f64 = 1e-14;
 
-/// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are none, whatever the
-/// largest one is: where bodies touch without force, all of them are what sums of loads leave. Collective.
-pub fn largest_load(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
-    highest(comm, problem.largest_load())
+/// What forces and displacements of a problem are small beside, whatever the largest of a solution are: these may be
+/// rounding themselves, where bodies touch without force or contact holds all that could move.
+#[derive(Debug, Clone, Copy)]
+pub struct Sizes {
+    /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are what sums of
+    /// loads leave.
+    pub load: f64,
+    /// These loads over the largest diagonal entry of K, the largest of all subdomains. A gap below [`ROUNDING`] of it
+    /// changes forces by less than rounding of the loads.
+    pub give: f64,
+}
+
+impl Sizes {
+    /// Those of `problem`. Collective.
+    pub fn of(comm: &SimpleCommunicator, problem: &Substructures) -> Sizes {
+        Sizes {
+            load: highest(comm, problem.largest_load()),
+            give: highest(comm, problem.largest_give()),
+        }
+    }
 }
 
 /// B y − c on the owned rows, including those that do not hold. Collective.
@@ -50,16 +66,16 @@ pub struct JudgedRows {
 }
 
 impl JudgedRows {
-    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank,
-    /// `load` the [`largest_load`]. A gap counts as violated only if it is above `open`, relative to the largest
-    /// displacement. There is no such tolerance for multipliers: a row that pulls little may hold up a body that gives
-    /// way much. Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank. A gap
+    /// counts as violated only if it is above `open`, relative to the largest displacement, and above rounding. There
+    /// is no such tolerance for multipliers: a row that pulls little may hold up a body that gives way much.
+    /// Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
         gaps: &[f64],
         lambda: &[f64],
-        (y, load): (f64, f64),
+        (y, sizes): (f64, Sizes),
         open: f64,
     ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
@@ -73,7 +89,9 @@ impl JudgedRows {
         }
         max_all(comm, &mut largest);
         let [jump_left, lambda_max, y_max, contradictory] = largest;
+        let Sizes { load, give } = sizes;
         let lambda_max = lambda_max.max(ROUNDING * load);
+        let y_max = y_max.max(ROUNDING * give);
         let mut rows = JudgedRows {
             active: jump.active.clone(),
             contradictory: contradictory > 0.0,
@@ -82,7 +100,7 @@ impl JudgedRows {
             lambda_max,
             y_max,
         };
-        let open = (NOISE * jump_left).max(open * y_max);
+        let open = (NOISE * jump_left).max(open * y_max).max(ROUNDING * give);
         let pull = ROUNDING * lambda_max.max(load);
         for r in contact.filter(|&r| jump.inequality[r]) {
             if jump.active[r] && lambda[r] < -pull {

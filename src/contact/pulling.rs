@@ -20,7 +20,7 @@ pub(super) struct Pulling<'a> {
 }
 
 impl<'a> Pulling<'a> {
-    /// The multipliers at the start of the solve; `load` is the [`judge::largest_load`].
+    /// The multipliers at the start of the solve; `load` is the [`judge::Sizes::load`].
     pub fn new(
         comm: &'a SimpleCommunicator,
         jump: &Jump,

@@ -4,7 +4,7 @@
 //! and may still have the wrong sign when displacements have converged. The certificate then refines the solution with
 //! the rows that hold, and multipliers get their digits: some may turn out to pull.
 
-use super::judge::largest_load;
+use super::judge::Sizes;
 use super::state::State;
 use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
@@ -40,9 +40,9 @@ pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<
         size(&mut solution.u.iter().flatten()),
     ];
     max_all(dual.comm(), &mut largest);
-    let load = largest_load(dual.comm(), &method.problem);
+    let Sizes { load, give } = Sizes::of(dual.comm(), &method.problem);
     let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
-    let pull = pull.max(ROUNDING * load);
+    let (pull, open) = (pull.max(ROUNDING * load), open.max(ROUNDING * give));
     let mut active = jump.active.clone();
     for block in &jump.blocks {
         leave(block, jump, &solution.lambda, pull, &mut active);

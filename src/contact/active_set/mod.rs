@@ -15,6 +15,7 @@ mod next;
 
 use std::time::Instant;
 
+use super::judge::Sizes;
 use super::pulling::Pulling;
 use super::restore::restore;
 use super::settings::{ContactSettings, ContactStart, ContactType};
@@ -122,8 +123,8 @@ pub(super) struct ActiveSet<'a> {
     n_rows: usize,
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
-    /// The largest load, beside which multipliers are rounding.
-    load: f64,
+    /// What multipliers and gaps are rounding beside.
+    sizes: Sizes,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -161,7 +162,7 @@ impl<'a> ActiveSet<'a> {
             at,
             n_rows,
             least: method.least_residual(),
-            load: judge::largest_load(method.session.comm(), problem),
+            sizes: Sizes::of(method.session.comm(), problem),
             placed: false,
             gaps: Vec::new(),
             held: Vec::new(),
@@ -273,7 +274,7 @@ impl<'a> ActiveSet<'a> {
             session.comm(),
             &method.dual().stiffness.jump,
             &self.at,
-            self.load,
+            self.sizes.load,
         )?;
         let mut look = |lambda: &PetscVec| pulling.lasts(lambda);
         let watched = tight && !self.exact && self.watched;
@@ -330,7 +331,9 @@ impl<'a> ActiveSet<'a> {
     /// Whether the jumps that rigid motions leave are as small as the residual, or rounding. The interface of a soft
     /// body on a stiff one hardly moves, but its forces are rounded like those inside. Collective.
     fn closed(&self, jump_left: f64, target: f64) -> bool {
-        let beyond = |length: f64| jump_left > CLOSED * target + 1e3 * judge::ROUNDING * length;
+        let give = self.sizes.give;
+        let beyond =
+            |length: f64| jump_left > CLOSED * target + 1e3 * judge::ROUNDING * length.max(give);
         // It takes a solve to know how far the inside moves: only where the interface does not settle it.
         !beyond(self.length) || {
             let inside = self.at.loads.largest_inside(&self.method.dual());

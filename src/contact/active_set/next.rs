@@ -39,7 +39,7 @@ impl ActiveSet<'_> {
         }
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
-        let sizes = (self.at.residual.largest(), self.load);
+        let sizes = (self.at.residual.largest(), self.sizes);
         let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, sizes, self.open);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);

@@ -38,8 +38,18 @@ pub struct Kkt {
 impl Kkt {
     /// Whether displacements and rows are a solution at this relative tolerance. NaN never is.
     pub fn is_credible(&self, rtol: f64) -> bool {
-        self.stationarity <= (CREDIBLE * rtol).clamp(1e-3, 0.5)
-            && self.feasibility <= (CREDIBLE * rtol).clamp(1e-6, 0.1)
+        self.beyond(rtol) <= 1.0
+    }
+
+    /// How far displacements and rows are from a solution at this relative tolerance: beyond 1 they are none. NaN if
+    /// one of them is.
+    pub(crate) fn beyond(&self, rtol: f64) -> f64 {
+        let forces = self.stationarity / (CREDIBLE * rtol).clamp(1e-3, 0.5);
+        let jumps = self.feasibility / (CREDIBLE * rtol).clamp(1e-6, 0.1);
+        match (forces + jumps).is_nan() {
+            true => f64::NAN,
+            false => forces.max(jumps),
+        }
     }
 }
 

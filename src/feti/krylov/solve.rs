@@ -216,8 +216,9 @@ impl LinearMethod {
     }
 
     /// The certificate has the last word. Displacements far from equilibrium or from the solution, or rows far from
-    /// holding, are not a solution, whatever the status of the iteration. An error that is too large in the energy norm
-    /// is refined first. Collective.
+    /// holding, are not a solution, whatever the status of the iteration. They are refined first, and so is an error
+    /// that is too large in the energy norm: where given values deform stiff bodies this norm hardly sees the soft
+    /// ones. Collective.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
         let mut part = REDUCED;
         for step in 0.. {
@@ -228,8 +229,9 @@ impl LinearMethod {
             let bound = solution.left.bound(asked);
             let estimate = self.energy_error(&solution, bound)?;
             let mut error = estimate.most;
-            if error > bound && step < STEPS {
-                let reduction = (part * bound / error).clamp(DEEPEST, REDUCED);
+            let beyond = solution.kkt.beyond(asked);
+            if (error > bound || beyond > 1.0) && step < STEPS {
+                let reduction = (part / beyond.max(error / bound)).clamp(DEEPEST, REDUCED);
                 let refined = self.refined(&solution, reduction)?;
                 if let Some(better) = refined.better {
                     solution = better;
@@ -239,7 +241,7 @@ impl LinearMethod {
                 // bound, which is too large by the condition number.
                 if let Some(correction) = refined.correction {
                     error = error.min(estimate.least.max(correction));
-                    if error > bound && reduction > DEEPEST {
+                    if (error > bound || beyond > 1.0) && reduction > DEEPEST {
                         part *= DEEPER;
                         continue;
                     }
