@@ -5,8 +5,9 @@ use mpi::topology::SimpleCommunicator;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::{highest, max_all, total};
-use crate::substructures::Substructures;
+use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
@@ -24,17 +25,22 @@ pub struct Sizes {
     /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are what sums of
     /// loads leave.
     pub load: f64,
-    /// These loads over the largest diagonal entry of K, the largest of all subdomains. A gap below [`ROUNDING`] of it
-    /// changes forces by less than rounding of the loads.
+    /// These loads over the largest diagonal entry of K on Γ, the largest of all subdomains. A gap below [`ROUNDING`]
+    /// of it changes forces by less than rounding of the loads.
     pub give: f64,
 }
 
 impl Sizes {
     /// Those of `problem`. Collective.
-    pub fn of(comm: &SimpleCommunicator, problem: &Substructures) -> Sizes {
+    pub fn of(dual: &Dual, problem: &Substructures) -> Sizes {
+        let locals = problem.local.iter().zip(&dual.stiffness.locals);
+        let give = |(sub, local): (&Subdomain, &Scaled)| match local.stiffest() {
+            stiff if stiff > 0.0 => sub.load() / stiff,
+            _ => 0.0,
+        };
         Sizes {
-            load: highest(comm, problem.largest_load()),
-            give: highest(comm, problem.largest_give()),
+            load: highest(dual.comm(), problem.largest_load()),
+            give: highest(dual.comm(), locals.map(give).fold(0.0, f64::max)),
         }
     }
 }

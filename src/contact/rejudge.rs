@@ -40,7 +40,7 @@ pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<
         size(&mut solution.u.iter().flatten()),
     ];
     max_all(dual.comm(), &mut largest);
-    let Sizes { load, give } = Sizes::of(dual.comm(), &method.problem);
+    let Sizes { load, give } = Sizes::of(&dual, &method.problem);
     let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
     let (pull, open) = (pull.max(ROUNDING * load), open.max(ROUNDING * give));
     let mut active = jump.active.clone();

@@ -141,24 +141,13 @@ pub struct Substructures {
 impl Substructures {
     /// The loads on one subdomain, Σ|f|, the largest of this rank's.
     pub(crate) fn largest_load(&self) -> f64 {
-        self.local.iter().map(load).fold(0.0, f64::max)
-    }
-
-    /// The loads on one subdomain over the largest diagonal entry of its K, the largest of this rank's.
-    pub(crate) fn largest_give(&self) -> f64 {
-        let give = |sub: &Subdomain| {
-            let stiff = sub.k.diagonal().into_iter().fold(0.0, f64::max);
-            if stiff > 0.0 {
-                load(sub) / stiff
-            } else {
-                0.0
-            }
-        };
-        self.local.iter().map(give).fold(0.0, f64::max)
+        self.local.iter().map(Subdomain::load).fold(0.0, f64::max)
     }
 }
 
-/// Σ|f|.
-fn load(sub: &Subdomain) -> f64 {
-    sub.f.iter().map(|f| f.abs()).sum()
+impl Subdomain {
+    /// Σ|f|.
+    pub(crate) fn load(&self) -> f64 {
+        self.f.iter().map(|f| f.abs()).sum()
+    }
 }

@@ -163,6 +163,14 @@ fn what_has_no_end_is_refused() {
             assert!(out.stderr.contains(part), "{}", out.all());
         }
     }
+    let mut set = command(PATH);
+    set.args(["solve", contact])
+        .env("PETSC_OPTIONS", format!("-options_file {zero}"));
+    let out = set.output().expect("the program");
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(2), "{said}");
+    let expected = format!("Error: PETSC_OPTIONS: -options_file is {zero}, a device");
+    assert!(said.starts_with(&expected), "{said}");
     let piped = format!("cat {contact} | {PATH} solve /dev/stdin --quiet -options_file /dev/null");
     let out = command("sh").args(["-c", &piped]).output();
     let out = out.expect("a shell");

@@ -147,6 +147,7 @@ impl<'a> ActiveSet<'a> {
             motion::check_few(problem, &dual, &loads.kernel)?;
         }
         let n_rows = jump.n_global;
+        let sizes = Sizes::of(&dual, problem);
         let at = Iterate::new(&dual, loads)?;
         drop(dual);
         let mut run = ActiveSet {
@@ -162,7 +163,7 @@ impl<'a> ActiveSet<'a> {
             at,
             n_rows,
             least: method.least_residual(),
-            sizes: Sizes::of(method.session.comm(), problem),
+            sizes,
             placed: false,
             gaps: Vec::new(),
             held: Vec::new(),

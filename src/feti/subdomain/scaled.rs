@@ -64,6 +64,12 @@ impl Scaled {
         }
     }
 
+    /// The largest diagonal entry of K on Γ; of a turned copy, before it was turned.
+    pub fn stiffest(&self) -> f64 {
+        let largest = self.problem.stiff().iter().fold(0.0, |a: f64, k| a.max(*k));
+        self.factor * largest
+    }
+
     /// Γ and Ψ, which do not depend on φ.
     pub fn gamma(&self) -> &Gamma {
         self.turned
