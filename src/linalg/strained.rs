@@ -6,8 +6,9 @@
 
 use super::csr::Csr;
 
-/// A subdomain moves rigidly if uᵀK u is below this part of Σ d u², d = diag(K).
-pub(crate) const RIGID: f64 = 1e-8;
+/// A subdomain moves rigidly if uᵀK u is below this part of Σ d u², d = diag(K). Forces of K u are then wrong by more
+/// than 1e-13 of themselves, and where nothing holds the motion there is nothing that bounds what they do.
+pub(crate) const RIGID: f64 = 1e-6;
 
 /// A column lies in the kernel of K if ‖K q‖ is below this part of ‖q‖, in the norms of D⁻¹ and D.
 const KERNEL: f64 = 1e-12;

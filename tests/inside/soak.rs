@@ -68,6 +68,12 @@ fn contact_loops_end() {
     fates(&[12082, 38045, 502808], solved);
 }
 
+/// Nothing holds a body sideways, and it moves up by 10³ times its strains: forces of this motion are rounding.
+#[test]
+fn motions_have_no_forces() {
+    fates(&[601304], solved);
+}
+
 /// Given values deform stiff bodies: their energy is 10¹⁰ times that of the jumps that are left between soft ones.
 #[test]
 fn jumps_are_closed_that_the_energy_does_not_see() {

@@ -149,6 +149,8 @@ impl LinearMethod {
         if !out.most.is_finite() {
             return Ok(Err(refused.unwrap_or(Uncertified::Solution)));
         }
+        // Bounds of several pairs contradict each other where rounding is larger than that.
+        out.rounding = out.rounding.max(out.least - out.most);
         out.most += out.rounding;
         out.least = (out.least - out.rounding).max(0.0);
         Ok(Ok(out))
