@@ -53,6 +53,10 @@ fn start() -> i32 {
     petsc::let_threads_allocate();
     let parsed = parse::parse(std::env::args().skip(1).collect());
     let petsc = parsed.as_ref().map(|p| p.petsc.clone()).unwrap_or_default();
+    if parsed.is_err() {
+        // PETSc starts to say the mistake once for all ranks, and must not read what it may be about.
+        std::env::remove_var("PETSC_OPTIONS");
+    }
     let session = match Session::new(&petsc, &parse::usage()) {
         Ok(session) => session,
         Err(error) => {
