@@ -18,8 +18,17 @@ pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
 
 /// [`load`] for a program that needs the rows of the rank's own points alone.
 pub(crate) fn load_part(session: &Session, path: &Path) -> Result<Scene> {
-    let read = fits::load_part(session, path, |spec| part(session, spec));
+    let mut cyclic = false;
+    let read = fits::load_part(session, path, |spec| {
+        let part = part(session, spec)?;
+        cyclic = part.cyclic;
+        Ok(part)
+    });
     let mut scene = given(session, path, read)?;
+    // PETSc may read the scene's options otherwise: it ignores case.
+    if cyclic != is_cyclic(session)? {
+        return load(session, path);
+    }
     let contact = gather_all(session.comm(), &[u64::from(scene.has_contact())]);
     scene.contact_elsewhere = contact.concat().contains(&1);
     Ok(scene)

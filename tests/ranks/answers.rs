@@ -93,6 +93,36 @@ fn partly_tied_bodies() {
     );
 }
 
+/// Each rank reads the rows of its own points, before the options of the scene are in PETSc's database, which ignores
+/// case.
+#[test]
+fn a_scene_says_how_its_subdomains_are_dealt_out() {
+    let scratch = Scratch::new("dealt");
+    let text = std::fs::read_to_string("examples/scenes/poisson_2x2.toml").expect("a scene");
+    assert!(!text.contains("[options]"));
+    for (k, option) in [
+        "fetifeti_distribution = \"cyclic\"",
+        "FETIFETI_Distribution = \"Cyclic\"",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let scene = scratch.file(
+            &format!("{k}.toml"),
+            &format!("{text}\n[options]\n{option}\n"),
+        );
+        let [one, three] = [1, 3].map(|ranks| solve(ranks, &scene, &[]));
+        let energies = [&one, &three].map(|r| number(&r["energy"]));
+        assert!(
+            near(energies[0], energies[1], 1e-9),
+            "{option}: {energies:?}"
+        );
+        for key in ["multipliers", "bodies", "dofs"] {
+            assert_eq!(one[key], three[key], "{option}: {key}");
+        }
+    }
+}
+
 #[test]
 fn unequal_bodies() {
     same(
