@@ -6,7 +6,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{highest, max_all, total};
+use crate::parallel::exchange::{max_all, total};
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
@@ -38,10 +38,11 @@ impl Sizes {
             stiff if stiff > 0.0 => sub.load() / stiff,
             _ => 0.0,
         };
-        Sizes {
-            load: highest(dual.comm(), problem.largest_load()),
-            give: highest(dual.comm(), locals.map(give).fold(0.0, f64::max)),
-        }
+        let give = locals.map(give).fold(0.0, f64::max);
+        let mut largest = [problem.largest_load(), give];
+        max_all(dual.comm(), &mut largest);
+        let [load, give] = largest;
+        Sizes { load, give }
     }
 }
 

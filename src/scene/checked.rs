@@ -212,7 +212,9 @@ impl Scene {
         spec.notes.extend(deep);
         validate::check_unknowns(&bodies)?;
         let tied = mostly_tied(&interfaces);
-        part::forget(&mut interfaces, &bodies, &points, &owns);
+        if part != Part::WHOLE {
+            part::forget(&mut interfaces, &bodies, &points, &owns);
+        }
         Ok(Scene {
             options: spec.options,
             title: spec.title,

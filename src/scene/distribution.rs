@@ -123,11 +123,17 @@ fn is_cyclic_unless(session: &Session, value: Option<&str>) -> Result<bool> {
 /// The part of this rank of what `spec` describes.
 fn part(session: &Session, spec: &SceneSpec) -> Result<Part> {
     let own = spec.options.iter().find(|(key, _)| key == DISTRIBUTION);
-    Ok(Part {
-        cyclic: is_cyclic_unless(session, own.map(|o| o.1.as_str()))?,
+    let cyclic = is_cyclic_unless(session, own.map(|o| o.1.as_str()))?;
+    Ok(of_rank(session, cyclic))
+}
+
+/// The part of this rank.
+fn of_rank(session: &Session, cyclic: bool) -> Part {
+    Part {
+        cyclic,
         ranks: session.size(),
         rank: session.rank(),
-    })
+    }
 }
 
 /// The option that [`is_cyclic`] reads.
@@ -135,12 +141,7 @@ const DISTRIBUTION: &str = "fetifeti_distribution";
 
 /// A predicate: whether this rank owns a subdomain, according to the options.
 pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
-    let part = Part {
-        cyclic: is_cyclic(session)?,
-        ranks: session.size(),
-        rank: session.rank(),
-    };
-    Ok(part.owns(&scene.bodies))
+    Ok(of_rank(session, is_cyclic(session)?).owns(&scene.bodies))
 }
 
 /// This rank's part of the scene, assembled. Collective.
