@@ -163,7 +163,7 @@ fn half(index: usize) -> Subdomain {
     Subdomain {
         index,
         body: board,
-        k: Csr::from_triplets(n, &triplets),
+        k: Csr::from_triplets(n, &triplets).into(),
         f: nodes.iter().map(|node| current(node[0])).collect(),
         dofs: nodes.iter().map(|&node| dof(board, node)).collect(),
         rho: vec![1.0; n],

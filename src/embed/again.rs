@@ -102,7 +102,7 @@ impl Embedded {
         let session = self.session.clone();
         let found = {
             let solver = self.solver.borrow();
-            let patterns: Vec<&Csr> = solver.problem().local.iter().map(|s| &s.k).collect();
+            let patterns: Vec<&Csr> = solver.problem().local.iter().map(|s| &*s.k).collect();
             self.frame.numbers(&patterns, given)
         };
         if any(session.comm(), found.is_none()) {

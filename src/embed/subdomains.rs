@@ -43,7 +43,7 @@ pub fn subdomain(n_global: usize, part: &mut Part, shape: &Shape, known: Known) 
         f: vec![0.0; part.dofs.len()],
         dofs: part.dofs.iter().map(number).collect(),
         rho: part.k.diagonal(),
-        k: std::mem::take(&mut part.k),
+        k: std::mem::take(&mut part.k).into(),
         primal: primal.into_iter().collect(),
         entities: others.iter().map(entity).collect(),
         near_kernel: known.near_kernel,

@@ -10,21 +10,19 @@ use crate::mesh::places;
 /// (o mod 3 − 1, o/3 mod 3 − 1, o/9 − 1).
 type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 
-/// K^(ij) on the free dofs, and the load with the prescribed values eliminated: f_F − K_FD u_D.
+/// K^(ij) on the free dofs, n × n.
 ///
-/// Springs add to the diagonal: ∫ k u·v with nodal quadrature.
-///
-/// `load` has an entry per degree of freedom. The rows of a node are the sum over the elements around it: they come out
-/// in order and sorted, and no search is needed.
-pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
+/// Springs add to the diagonal: ∫ k u·v with nodal quadrature. The rows of a node are the sum over the elements around
+/// it: they come out in order and sorted, and no search is needed.
+pub fn matrix(mesh: &SubdomainMesh) -> Csr {
     let grid = match &mesh.elements {
         Elements::Grid(grid) => grid,
-        Elements::Cells(cells) => return sparse::assemble(mesh, cells, load),
+        Elements::Cells(cells) => return sparse::matrix(mesh, cells),
     };
     match mesh.components() {
-        1 => rows::<1>(mesh, grid, load),
-        2 => rows::<2>(mesh, grid, load),
-        _ => rows::<3>(mesh, grid, load),
+        1 => rows::<1>(mesh, grid),
+        2 => rows::<2>(mesh, grid),
+        _ => rows::<3>(mesh, grid),
     }
 }
 
@@ -42,7 +40,8 @@ pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
     }
 }
 
-/// The load of [`assemble`] alone, to the last bit: f minus the [`given_columns`] times the given values.
+/// The load on the free dofs with the given values eliminated, f_F − K_FD u_D: `load`, which has an entry per degree of
+/// freedom, less the [`given_columns`] times the given values.
 pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> {
     let free = (0..load.len()).filter(|&k| mesh.dof[k] != SubdomainMesh::PRESCRIBED);
     let rows = free.enumerate().map(|(i, k)| {
@@ -53,7 +52,7 @@ pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> 
     rows.collect()
 }
 
-fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid, load: &[f64]) -> (Csr, Vec<f64>) {
+fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid) -> Csr {
     let cells = Cells::new(mesh, grid);
     let n = mesh.n_free();
     let width = C * 3_usize.pow(mesh.dim as u32);
@@ -63,38 +62,29 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid, load: &[f64]) -> (Csr
         val: Vec::with_capacity(width * n),
     };
     k.row_ptr.push(0);
-    let mut f = Vec::with_capacity(n);
+    let given = |dof: u32| dof == SubdomainMesh::PRESCRIBED;
     for (node, place) in places(grid.nodes()).enumerate() {
         let dofs = &mesh.dof[C * node..C * (node + 1)];
-        if dofs.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
+        if dofs.iter().all(|&d| given(d)) {
             continue;
         }
         let stencil = stencil::<C>(grid, &cells, place);
-        for (c, _) in dofs
-            .iter()
-            .enumerate()
-            .filter(|d| *d.1 != SubdomainMesh::PRESCRIBED)
-        {
-            let mut load_here = load[C * node + c];
+        for c in (0..C).filter(|&c| !given(dofs[c])) {
             let spring = mesh.spring.get(node).copied().unwrap_or(0.0);
             for (block, other) in neighbours(grid, &stencil, place) {
+                let columns = &mesh.dof[C * other..C * (other + 1)];
                 for (j, &value) in block[c].iter().enumerate() {
-                    let at = C * other + j;
-                    let own = other == node && j == c;
-                    let value = if own { value + spring } else { value };
-                    if mesh.dof[at] == SubdomainMesh::PRESCRIBED {
-                        load_here -= value * mesh.prescribed[at];
-                    } else {
-                        k.col.push(mesh.dof[at]);
-                        k.val.push(value);
+                    if !given(columns[j]) {
+                        let own = other == node && j == c;
+                        k.col.push(columns[j]);
+                        k.val.push(if own { value + spring } else { value });
                     }
                 }
             }
             k.row_ptr.push(k.col.len());
-            f.push(load_here);
         }
     }
-    (k, f)
+    k
 }
 
 fn columns<const C: usize>(mesh: &SubdomainMesh, grid: &Grid) -> Csr {

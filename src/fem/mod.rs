@@ -15,7 +15,7 @@ pub mod recovery;
 mod sparse;
 mod subdomain;
 
-pub(crate) use assemble::{assemble, free_load, given_columns};
+pub(crate) use assemble::{free_load, given_columns, matrix};
 pub(crate) use energy::given_energy;
 pub use form::{Form, Physics};
 pub use internal_force::internal_force;

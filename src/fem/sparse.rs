@@ -103,32 +103,26 @@ pub fn each_matrix(mesh: &SubdomainMesh, cells: &Cells, mut f: impl FnMut(&[u32]
     }
 }
 
-/// As [`assemble`](super::assemble()), for cells of any kind.
-pub fn assemble(mesh: &SubdomainMesh, cells: &Cells, load: &[f64]) -> (Csr, Vec<f64>) {
+/// As [`matrix`](super::matrix()), for cells of any kind.
+pub fn matrix(mesh: &SubdomainMesh, cells: &Cells) -> Csr {
     let (c, blocks) = (mesh.components(), Blocks::new(mesh, cells));
-    let n = mesh.n_free();
     let mut k = Csr {
-        row_ptr: Vec::with_capacity(n + 1),
+        row_ptr: Vec::with_capacity(mesh.n_free() + 1),
         col: Vec::with_capacity(blocks.values.len()),
         val: Vec::with_capacity(blocks.values.len()),
     };
     k.row_ptr.push(0);
-    let mut f = Vec::with_capacity(n);
     for row in free_rows(mesh) {
-        let mut load_here = load[row];
         for (column, value) in blocks.row(c, row / c, row % c) {
-            match mesh.dof[column] {
-                SubdomainMesh::PRESCRIBED => load_here -= value * mesh.prescribed[column],
-                dof => {
-                    k.col.push(dof);
-                    k.val.push(value);
-                }
+            let dof = mesh.dof[column];
+            if dof != SubdomainMesh::PRESCRIBED {
+                k.col.push(dof);
+                k.val.push(value);
             }
         }
         k.row_ptr.push(k.col.len());
-        f.push(load_here);
     }
-    (k, f)
+    k
 }
 
 /// As [`given_columns`](super::given_columns), for cells of any kind.

@@ -121,7 +121,8 @@ impl LinearMethod {
                 (sub.k.val.len(), sub.rho.len()),
                 (new.k.len(), new.rho.len())
             );
-            (sub.k.val, sub.rho) = (new.k, new.rho);
+            Arc::make_mut(&mut sub.k).val = new.k;
+            sub.rho = new.rho;
         }
         problem.rows = rows.unwrap_or(problem.rows);
         let mut out = LinearMethod::keeping(&session, problem, settings, Some(&kept))?;

@@ -3,6 +3,7 @@
 use super::checked::Scene;
 use super::coefficient::{at, stiffest};
 use super::geometry::topology::{entities, rigid_motions};
+use super::matrices::Matrices;
 use super::model::steps::Factors;
 use crate::error::Result;
 use crate::fem::{self, SubdomainMesh};
@@ -20,9 +21,13 @@ impl Scene {
     /// [`Error::Input`](crate::Error::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
+        let matrices = Matrices::default();
         // Assembles all subdomains, then reports the first error in their order: the first error in time would be
         // random.
-        let local: Vec<Result<Subdomain>> = mine.par_iter().map(|&s| self.subdomain(s)).collect();
+        let local: Vec<Result<Subdomain>> = mine
+            .par_iter()
+            .map(|&s| self.assemble_with(&self.subdomain_mesh(s)?, &matrices))
+            .collect();
         let local: Result<Vec<Subdomain>> = local.into_iter().collect();
         Ok(Substructures {
             n_bodies: self.n_bodies(),
@@ -48,10 +53,20 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
+        self.assemble_with(mesh, &Matrices::default())
+    }
+
+    /// The same; its matrix may be known.
+    fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &Matrices) -> Result<Subdomain> {
         let (body, inside) = self.place(mesh.index);
         let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
-        let (k, f) = fem::assemble(mesh, &load);
+        let f = match mesh.prescribed.iter().all(|u| *u == 0.0) {
+            true => mesh.free(&load),
+            false => fem::free_load(mesh, &fem::given_columns(mesh), &load),
+        };
         let whole = body.mesh();
+        let nodes = whole.subdomain_nodes(inside);
+        let k = matrices.of(body, mesh, &nodes);
         let n = f.len();
         let c = body.components;
         let mut dofs = Vec::with_capacity(n);
@@ -59,7 +74,7 @@ impl Scene {
         let mut coordinates = Vec::with_capacity(n);
         let mut primal = Vec::new();
         let stiffest = stiffest(mesh);
-        for (node, of_body) in whole.subdomain_nodes(inside).into_iter().enumerate() {
+        for (node, of_body) in nodes.into_iter().enumerate() {
             let own = &mesh.dof[c * node..c * (node + 1)];
             if own.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
                 continue;

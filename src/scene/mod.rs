@@ -27,6 +27,7 @@ pub(crate) mod fits;
 pub(crate) mod geometry;
 mod joint;
 mod loads;
+mod matrices;
 mod meshes;
 pub(crate) mod model;
 #[cfg(feature = "cli")]

@@ -1,6 +1,6 @@
 //! The memory that a scene will take, from counts of elements and subdomains alone: nothing is made for it.
 //!
-//! The coefficients are fitted to measurements (docs/options.md, "Memory"): what they give is 0.9 to 2 times what was
+//! The coefficients are fitted to measurements (docs/options.md, "Memory"): what they give is 0.8 to 2 times what was
 //! measured, and no bound.
 
 use std::collections::HashMap;
@@ -15,15 +15,18 @@ use crate::mesh::Mesh;
 const PROGRAM: f64 = 5.8e7;
 /// A subdomain, whatever its size: its lists and tables; with a solver around it.
 const SUBDOMAIN: [f64; 2] = [1.5e3, 3.5e3];
-/// A node of a subdomain: its numbers and coordinates; and what each of its components takes.
-const NODE: [f64; 2] = [80.0, 30.0];
+/// A node of a subdomain; what each of its components takes: its numbers and coordinates; and its entry of each rigid
+/// motion.
+const NODE: [f64; 3] = [60.0, 40.0, 8.0];
 /// An entry of a stiffness matrix, while it is assembled.
 const ENTRY: f64 = 14.0;
 /// A node on the boundary of a body among others: every rank knows all of them.
 const BOUNDARY: f64 = 850.0;
-/// A node on the boundary of a body among others: its rows, and what they take in the projector. Ties have a row for
-/// each component, and what they take grows with the square of that number.
+/// A node on the boundary of a body among others: its rows, and what they take in the projector. In space a row touches
+/// twice as much as in the plane. Ties have a row for each component, and what they take grows with this power of their
+/// number.
 const ROW: f64 = 950.0;
+const TIED: f64 = 2.3;
 /// Rigid motions of a body among others, times their number to the power 1.5: columns of G, and their part of the
 /// factor of GᵀQG.
 const MOTION: f64 = 3.6e3;
@@ -43,8 +46,43 @@ pub(crate) struct Need {
     whole: f64,
     /// Over all ranks: matrices and loads; and what a solver adds beside factors.
     parts: [f64; 2],
-    /// Factors: bytes of one, how many differ, how many subdomains share them.
-    factors: Vec<[f64; 3]>,
+    /// Stiffness matrices, and factors.
+    matrices: Shared,
+    factors: Shared,
+}
+
+/// What subdomains that are alike share.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Shared {
+    /// Bytes of one, how many differ, how many subdomains share them.
+    groups: Vec<[f64; 3]>,
+    /// The group of each key.
+    known: HashMap<[u64; 13], usize>,
+}
+
+impl Shared {
+    /// Adds a body's subdomains, of which `kinds` differ, to the group of those with the same key. Without a key all
+    /// differ.
+    fn add(&mut self, key: Option<[u64; 13]>, bytes: f64, kinds: f64, subdomains: f64) {
+        let kinds = if key.is_some() { kinds } else { subdomains };
+        let next = self.groups.len();
+        let at = key.map_or(next, |key| *self.known.entry(key).or_insert(next));
+        match self.groups.get_mut(at) {
+            Some(group) => {
+                group[1] = group[1].max(kinds);
+                group[2] += subdomains;
+            }
+            None => self.groups.push([bytes, kinds, subdomains]),
+        }
+    }
+
+    /// Bytes on each of `ranks` ranks.
+    fn on_each(&self, ranks: usize) -> f64 {
+        let each = |[bytes, kinds, subdomains]: &[f64; 3]| {
+            bytes * kinds.min((subdomains / ranks as f64).ceil())
+        };
+        self.groups.iter().map(each).sum()
+    }
 }
 
 /// One body in numbers.
@@ -72,8 +110,6 @@ impl Need {
             whole: PROGRAM,
             ..Need::default()
         };
-        // Bodies whose subdomains are alike share factors: the number in each group.
-        let mut alike: HashMap<[u64; 7], usize> = HashMap::new();
         for body in bodies {
             let dim = body.mesh.dim();
             let c = form.components(dim) as f64;
@@ -85,14 +121,15 @@ impl Need {
             } else if !alone {
                 need.whole += BOUNDARY * n.boundary;
             }
+            let motions = form.rigid(dim).len() as f64;
             if !alone {
-                let motions = form.rigid(dim).len() as f64;
-                let rows = if tied { c * c } else { 1.0 };
+                let rows = if tied { c.powf(TIED) } else { dim as f64 - 1.0 };
                 need.parts[1] += ROW * rows * n.surface(dim) + MOTION * motions.powf(1.5);
             }
             let transient = if n.cells { 2.0 } else { 1.0 };
-            let node = NODE[0] + NODE[1] * c + transient * ENTRY * n.row * c * c;
+            let node = NODE[0] + (NODE[1] + NODE[2] * motions) * c;
             need.parts[0] += n.subdomains * (SUBDOMAIN[0] + n.each * node);
+            let matrix = transient * ENTRY * n.row * c * c * n.each;
             need.parts[1] += n.subdomains * (SUBDOMAIN[1] + 24.0 * c * n.each);
             let fill = match dim {
                 2 => FACTOR[0] * n.each.log2().max(1.0),
@@ -101,40 +138,25 @@ impl Need {
             // The rows of higher order have more entries, and so have their factors.
             let order = (n.row / if dim == 2 { 9.0 } else { 27.0 }).max(1.0);
             let factor = 8.0 * c * c * n.each * fill * order;
-            match key(body) {
-                None => need.factors.push([factor, n.subdomains, n.subdomains]),
-                Some(key) => {
-                    let kinds = match body.mesh {
-                        Mesh::Grid(_) => n.subdomains.min(3_f64.powi(dim as i32)),
-                        Mesh::Cells(_) => n.subdomains,
-                    };
-                    let at = *alike.entry(key).or_insert(need.factors.len());
-                    match need.factors.get_mut(at) {
-                        Some(group) => {
-                            group[1] = group[1].max(kinds);
-                            group[2] += n.subdomains;
-                        }
-                        None => need.factors.push([factor, kinds, n.subdomains]),
-                    }
-                }
-            }
+            let kinds = match body.mesh {
+                // Inside, at a side, at an edge, ….
+                Mesh::Grid(_) => n.subdomains.min(3_f64.powi(dim as i32)),
+                Mesh::Cells(_) => n.subdomains,
+            };
+            (need.factors).add(key(body), factor, kinds, n.subdomains);
+            (need.matrices).add(exact_key(body), matrix, kinds, n.subdomains);
         }
         need
     }
 
     /// Bytes on each of `ranks` ranks when everything is assembled.
     pub fn assembled(&self, ranks: usize) -> f64 {
-        self.whole + self.parts[0] / ranks as f64
+        self.whole + self.parts[0] / ranks as f64 + self.matrices.on_each(ranks)
     }
 
     /// Bytes on each of `ranks` ranks for a solve.
     pub fn solved(&self, ranks: usize) -> f64 {
-        let each = |[factor, kinds, subdomains]: &[f64; 3]| {
-            factor * kinds.min((subdomains / ranks as f64).ceil())
-        };
-        self.assembled(ranks)
-            + self.parts[1] / ranks as f64
-            + self.factors.iter().map(each).sum::<f64>()
+        self.assembled(ranks) + self.parts[1] / ranks as f64 + self.factors.on_each(ranks)
     }
 }
 
@@ -213,9 +235,9 @@ impl Counts {
     }
 }
 
-/// What is the same in boxes whose subdomains have the same matrices, up to factors, and in copies of one mesh; `None`
-/// where they all differ.
-fn key(body: &BodySpec) -> Option<[u64; 7]> {
+/// What is the same in boxes whose subdomains have the same factors, up to multiples and turns, and in copies of one
+/// mesh; `None` where they all differ.
+fn key(body: &BodySpec) -> Option<[u64; 13]> {
     let steady = |field: &Field| match field {
         Field::Expression(e) => !e.varies_in_space(),
         Field::Checkerboard { .. } | Field::Table { .. } => true,
@@ -224,19 +246,38 @@ fn key(body: &BodySpec) -> Option<[u64; 7]> {
     if body.map.is_some() || !steady(&body.rho) || !steady(&body.poisson) {
         return None;
     }
-    let grid = match &body.mesh {
-        Mesh::Grid(grid) => grid,
+    let mut out = [0; 13];
+    let first = match &body.mesh {
+        Mesh::Grid(grid) => {
+            let [a, b, c] = grid.block_elements().map(|n| n as u64);
+            // Sizes in seven digits: copies at other places differ in rounding.
+            let [x, y, z] = grid.step().map(|h| f64::from(h as f32).to_bits());
+            [a, b, c, x, y, z, body.order as u64]
+        }
         Mesh::Cells(mesh) => {
             let [x, y, z] = mesh.points.first()?.map(f64::to_bits);
             let [cells, points] = [mesh.cells.len(), mesh.points.len()].map(|n| n as u64);
-            return Some([cells, points, x, y, z, 0, 0]);
+            [cells, points, x, y, z, 0, 0]
         }
     };
-    let (block, step) = (grid.block_elements(), grid.step());
-    let [a, b, c] = block.map(|n| n as u64);
-    // Sizes in seven digits: copies at other places differ in rounding.
-    let [x, y, z] = step.map(|h| f64::from(h as f32).to_bits());
-    Some([a, b, c, x, y, z, body.order as u64])
+    out[..7].copy_from_slice(&first);
+    Some(out)
+}
+
+/// What is the same in bodies whose subdomains have the same matrices: coefficients and directions, too.
+fn exact_key(body: &BodySpec) -> Option<[u64; 13]> {
+    let number = |field: &Field| match field {
+        Field::Expression(e) => e.as_constant().map(f64::to_bits),
+        _ => None,
+    };
+    let mut out = key(body)?;
+    (out[7], out[8]) = (number(&body.rho)?, number(&body.poisson)?);
+    if let Some(motion) = &body.motion {
+        // A row of R and an entry of another one tell turns apart.
+        let [[x, y, z], [w, ..], _] = motion.turn.map(|row| row.map(f64::to_bits));
+        out[9..].copy_from_slice(&[x, y, z, w]);
+    }
+    Some(out)
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ mod rows;
 
 pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow};
 
+use std::sync::Arc;
+
 use crate::linalg::csr::Csr;
 
 /// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
@@ -18,8 +20,8 @@ pub struct Subdomain {
     pub index: usize,
     /// The body it belongs to.
     pub body: usize,
-    /// Stiffness K^(ij), n × n, symmetric positive semidefinite.
-    pub k: Csr,
+    /// Stiffness K^(ij), n × n, symmetric positive semidefinite. Subdomains that are alike may share one.
+    pub k: Arc<Csr>,
     /// Load f^(ij), length n.
     pub f: Vec<f64>,
     /// Body dof of each local dof, length n. Two subdomains of one body share a degree of freedom exactly when
@@ -85,7 +87,7 @@ pub struct Entity {
 ///     entities: Vec::new(),
 ///     near_kernel: None,        // kernels are found from the matrices
 ///     coordinates: None,
-///     k,
+///     k: k.into(),
 ///     f,
 ///     dofs,
 /// };

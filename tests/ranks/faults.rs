@@ -226,7 +226,7 @@ fn a_singular_matrix_on_one_rank_only_is_named() {
             let all: Vec<(u32, u32, f64)> = all
                 .filter(|&(i, j, _)| kept(i as usize, j as usize))
                 .collect();
-            subdomain.k = Csr::from_triplets(n, &all);
+            subdomain.k = Csr::from_triplets(n, &all).into();
         }
         FetiFeti::new(session, problem, MethodSettings::default())?.solve()?;
         Ok(())
@@ -270,7 +270,7 @@ fn a_zero_row_on_an_interface_is_named() {
             let all = (0..n).flat_map(entries);
             let kept = all.filter(|&(i, j, _)| i as usize != at && j as usize != at);
             let kept: Vec<(u32, u32, f64)> = kept.collect();
-            sub.k = Csr::from_triplets(n, &kept);
+            sub.k = Csr::from_triplets(n, &kept).into();
         }
         FetiFeti::new(session, problem, MethodSettings::default())?.solve()?;
         Ok(())

@@ -116,7 +116,7 @@ impl Grid {
         Subdomain {
             index,
             body,
-            k: Csr::from_triplets(n, &triplets),
+            k: Csr::from_triplets(n, &triplets).into(),
             f,
             dofs,
             rho: vec![rho; n],

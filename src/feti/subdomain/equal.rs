@@ -8,6 +8,7 @@
 use std::collections::hash_map::DefaultHasher;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use super::congruent;
 use super::turn::Turn;
@@ -118,8 +119,7 @@ pub(super) fn same_pattern(problem: &Substructures, jump: &Jump, i: usize, j: us
     jump.delta[i] == jump.delta[j]
         && jump.primal[i] == jump.primal[j]
         && averaged(i).eq(averaged(j))
-        && a.row_ptr == b.row_ptr
-        && a.col == b.col
+        && (Arc::ptr_eq(a, b) || (a.row_ptr == b.row_ptr && a.col == b.col))
 }
 
 /// φ with K_j = φ K_i if the subdomains are equal, `None` otherwise.
@@ -128,7 +128,7 @@ fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<
         return None;
     }
     let (a, b) = (&problem.local[i].k, &problem.local[j].k);
-    if a.val == b.val {
+    if Arc::ptr_eq(a, b) || a.val == b.val {
         return Some(1.0);
     }
     let ratio = reference(b) / reference(a);

@@ -199,9 +199,14 @@ impl BodySpec {
 
     /// Position of a node of the undeformed body.
     pub(crate) fn undeformed(&self, node: usize) -> [f64; 3] {
-        let point = self.mesh.position(node);
-        let point = self.map.as_ref().map_or(point, |map| map.apply(point));
+        let point = self.shaped(node);
         self.motion.map_or(point, |motion| motion.apply(point))
+    }
+
+    /// Position of a node of the mesh, bent into shape and not yet at its place.
+    pub(crate) fn shaped(&self, node: usize) -> [f64; 3] {
+        let point = self.mesh.position(node);
+        self.map.as_ref().map_or(point, |map| map.apply(point))
     }
 
     /// The displacement of a node from [`BodySpec::undeformed`] to [`BodySpec::position`].

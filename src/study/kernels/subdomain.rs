@@ -1,5 +1,7 @@
 //! The matrix of a subdomain that touches no side of the domain, with loads whose solutions are known.
 
+use std::sync::Arc;
+
 use super::KernelCase;
 use crate::linalg::csr::Csr;
 use crate::scene::Scene;
@@ -54,7 +56,7 @@ impl Sample {
             load: product(&k, &solution),
             inner_load: product(&inner, &inner_solution),
             inner_positions: inside.iter().map(|&i| positions[i as usize]).collect(),
-            k,
+            k: Arc::unwrap_or_clone(k),
             positions,
             interface,
             solution,

@@ -44,7 +44,7 @@ fn cases() -> Vec<Case> {
             })
         };
         let interface = (0..sub.k.n() as u32).filter(at_side).collect();
-        let k = sub.k;
+        let k = std::sync::Arc::unwrap_or_clone(sub.k);
         Case {
             name,
             interface,

@@ -42,6 +42,11 @@ fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
     }
 }
 
+/// K and the load with the given values eliminated.
+fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
+    (matrix(mesh), free_load(mesh, &given_columns(mesh), load))
+}
+
 #[test]
 fn the_matrix_is_the_sum_of_element_matrices() {
     let m = mesh(&[]);

@@ -19,13 +19,13 @@ fn grid(bodies: usize, subdomains: usize, elements: usize, more: &str) -> Need {
 fn the_need_is_what_was_measured_within_a_factor_of_two() {
     let solid = "dimension = 3\nphysics = \"elasticity\"";
     for (need, plan, solve) in [
-        (grid(1, 447, 2, ""), 728.0, 1155.0),
+        (grid(1, 447, 2, ""), 543.0, 999.0),
         (grid(1, 1, 1000, ""), 318.0, 928.0),
-        (grid(30, 4, 8, ""), 446.0, 545.0),
-        (grid(1, 1, 600, "physics = \"elasticity\""), 426.0, 1127.0),
-        (grid(1, 1, 40, "dimension = 3"), 88.0, 438.0),
+        (grid(30, 4, 8, ""), 333.0, 424.0),
+        (grid(1, 1, 600, "physics = \"elasticity\""), 426.0, 1123.0),
+        (grid(1, 1, 40, "dimension = 3"), 88.0, 444.0),
         (grid(1, 1, 24, solid), 106.0, 475.0),
-        (grid(1, 4, 8, solid), 190.0, 341.0),
+        (grid(1, 4, 8, solid), 94.0, 249.0),
         (grid(1, 2, 8, &format!("{solid}\norder = 2")), 405.0, 1134.0),
     ] {
         let factors = [need.assembled(1) / plan / 1e6, need.solved(1) / solve / 1e6];
@@ -42,11 +42,11 @@ fn many_bodies_take_what_was_measured() {
     let elastic = "physics = \"elasticity\"";
     let solid = format!("dimension = 3\n{elastic}");
     for (need, solve) in [
-        (grid(64, 1, 4, ""), 226.0),
-        (grid(100, 1, 2, ""), 320.0),
-        (grid(40, 1, 4, elastic), 195.0),
-        (grid(6, 2, 3, &solid), 884.0),
-        (grid(12, 1, 3, &solid), 1624.0),
+        (grid(64, 1, 4, ""), 209.0),
+        (grid(100, 1, 2, ""), 317.0),
+        (grid(40, 1, 4, elastic), 177.0),
+        (grid(6, 2, 3, &solid), 685.0),
+        (grid(12, 1, 3, &solid), 1434.0),
     ] {
         let factor = need.solved(1) / solve / 1e6;
         assert!((0.9..1.5).contains(&factor), "{factor} of {solve} MB");
@@ -69,7 +69,8 @@ fn coefficients_that_vary_in_space_leave_nothing_to_share() {
         .solved(1)
     };
     let [constant, by_body, by_point] = ["3", "\"1 + bi\"", "\"1 + x\""].map(with);
-    assert_eq!(constant, by_body);
+    // Bodies that differ by a factor have one factorisation, but matrices of their own.
+    assert!(by_body > constant, "{by_body} {constant}");
     // 64 factors instead of 9.
     assert!(by_point > constant + 1e7, "{by_point} {constant}");
 }

@@ -224,7 +224,7 @@ impl Solid {
         Subdomain {
             index,
             body,
-            k: Csr::from_triplets(n, &triplets),
+            k: Csr::from_triplets(n, &triplets).into(),
             f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
             dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
             rho,

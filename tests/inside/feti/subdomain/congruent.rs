@@ -1,5 +1,7 @@
 //! Unit tests of `src/feti/subdomain/congruent.rs`.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::settings::Primal;
@@ -58,9 +60,12 @@ fn a_scalar_field_needs_no_turn() {
 #[test]
 fn multiples_are_found_and_other_matrices_are_not() {
     let all = ring("elasticity", |problem| {
-        problem.local[3].k.val.iter_mut().for_each(|v| *v *= 7.3);
+        Arc::make_mut(&mut problem.local[3].k)
+            .val
+            .iter_mut()
+            .for_each(|v| *v *= 7.3);
         // Stiffer by 1e-6 in one entry, symmetrically; one node moved by 1e-6.
-        let k = &mut problem.local[5].k;
+        let k = Arc::make_mut(&mut problem.local[5].k);
         k.val[0] *= 1.0 + 1e-6;
         if let Some(places) = &mut problem.local[6].coordinates {
             places[20][0] += 1e-6;

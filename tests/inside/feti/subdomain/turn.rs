@@ -71,7 +71,7 @@ impl Sample {
         let averages =
             averages.map(|(face, c)| face.iter().map(|n| (dim * n + c) as u32).collect());
         Sample {
-            k: sub.k,
+            k: Arc::unwrap_or_clone(sub.k),
             delta: dofs(&delta),
             vertices: dofs(&vertices),
             averages: averages.collect(),
