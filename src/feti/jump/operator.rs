@@ -49,6 +49,8 @@ pub struct Jump {
     pub active: Vec<bool>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
+    /// The block of each owned row of B_gl.
+    pub(super) block_of: Vec<u32>,
     /// The dofs of coupled blocks.
     pub slots: Slots,
     /// For each owned row of B_gl, its index among the rows that this rank provides.
@@ -138,7 +140,10 @@ impl Jump {
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
         let zeros = std::iter::repeat_n(0.0, n_owned_local);
         let never = std::iter::repeat_n(false, n_owned_local);
+        let numbered = (0..).zip(&blocks);
+        let block_of = numbered.flat_map(|(k, block)| block.rows.clone().map(move |_| k));
         let mut jump = Jump {
+            block_of: block_of.collect(),
             first,
             n_owned,
             n_global,
@@ -159,7 +164,7 @@ impl Jump {
             ..Jump::default()
         };
         jump.held = jump.gap.clone();
-        jump.reconcile(|_| true);
+        jump.reconcile_all();
         jump.receive(problem, sharing, exchange(comm, outgoing));
         let (slots, places) = Slots::new(comm, &jump.blocks, &jump.rank_of, &jump.subdomains);
         let columns = jump.columns.iter_mut().zip(places);
@@ -175,7 +180,7 @@ impl Jump {
             *c = gaps[r];
         }
         self.held.clone_from(&self.gap);
-        self.reconcile(|_| true);
+        self.reconcile_all();
     }
 
     /// The owned rows of B_gl. The rows before them belong to B_loc.

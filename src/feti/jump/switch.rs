@@ -3,7 +3,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::blocks::{Block, Entry};
+use super::blocks::Entry;
 use super::operator::Jump;
 use crate::parallel::exchange::exchange;
 
@@ -25,10 +25,14 @@ impl Jump {
         out
     }
 
-    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for the blocks that
-    /// `which` selects.
-    pub(crate) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
-        for block in self.blocks.iter().filter(|b| which(b)) {
+    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for all blocks.
+    pub(super) fn reconcile_all(&mut self) {
+        self.reconcile(0..self.blocks.len());
+    }
+
+    /// The same for some blocks.
+    fn reconcile(&mut self, which: impl Iterator<Item = usize>) {
+        for block in which.map(|k| &self.blocks[k]) {
             let (active, c) = (
                 &self.active[block.rows.clone()],
                 &self.gap[block.rows.clone()],
@@ -42,28 +46,31 @@ impl Jump {
     pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
         debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
-        let mut changed = 0;
-        for block in &mut self.blocks {
+        let pairs = self.active.iter().zip(active);
+        let rows = (0..).zip(pairs).filter(|(_, (old, new))| old != new);
+        let rows: Vec<usize> = rows.map(|(i, _)| i).collect();
+        let mut blocks: Vec<u32> = (rows.iter())
+            .map(|&i| self.block_of[i - self.n_owned_local])
+            .collect();
+        blocks.dedup();
+        for &k in &blocks {
+            let block = &mut self.blocks[k as usize];
             let (old, new) = (
                 &self.active[block.rows.clone()],
                 &active[block.rows.clone()],
             );
-            let here = old.iter().zip(new).filter(|(a, b)| a != b).count();
-            if here > 0 {
-                block.hold(
-                    self.first,
-                    |r| old[r] != new[r],
-                    new,
-                    &mut |entry: Entry| {
-                        let to = self.rank_of[entry.subdomain as usize];
-                        outgoing[to as usize].push(entry);
-                    },
-                );
-            }
-            changed += here;
+            block.hold(
+                self.first,
+                |r| old[r] != new[r],
+                new,
+                &mut |entry: Entry| {
+                    let to = self.rank_of[entry.subdomain as usize];
+                    outgoing[to as usize].push(entry);
+                },
+            );
         }
-        let old = std::mem::replace(&mut self.active, active.to_vec());
-        self.reconcile(|block| old[block.rows.clone()] != active[block.rows.clone()]);
+        self.active.copy_from_slice(active);
+        self.reconcile(blocks.iter().map(|&k| k as usize));
         for entry in exchange(comm, outgoing) {
             let j = self.subdomains.binary_search(&entry.subdomain);
             let j = j.expect("entries go to the rank of their subdomain");
@@ -78,6 +85,6 @@ impl Jump {
             self.columns[j].b[k] = entry.b;
             self.columns[j].bd[k] = entry.bd;
         }
-        changed
+        rows.len()
     }
 }
