@@ -1,5 +1,6 @@
 //! The pattern of a partial factorisation: order of elimination, fronts, and where their entries go.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dissection::nested_dissection;
@@ -158,6 +159,55 @@ impl Symbolic {
         }
     }
 
+    /// The same for blocks of dofs, all coupled: `blocks` has the pattern of the blocks and `dofs` their dofs, n in all.
+    /// Sets of blocks become fronts; blocks in no set have no dofs.
+    pub fn with_blocks(
+        blocks: &Csr,
+        sets: &[Vec<u32>],
+        n: usize,
+        dofs: impl Fn(u32) -> Range<usize>,
+    ) -> Symbolic {
+        let coarse = Symbolic::with_supernodes(blocks, &[], sets);
+        let mut position = vec![0; n];
+        let mut interior = Vec::with_capacity(n);
+        let mut first = vec![0u32];
+        for &block in &coarse.interior {
+            for dof in dofs(block) {
+                position[dof] = interior.len() as u32;
+                interior.push(dof as u32);
+            }
+            first.push(interior.len() as u32);
+        }
+        let mut storage = 0;
+        let fronts = coarse.fronts.into_iter().map(|front| {
+            let below = front.below.iter().map(|&p| p as usize);
+            let below = below.flat_map(|p| first[p]..first[p + 1]);
+            let mut front = Front {
+                start: first[front.start] as usize,
+                end: first[front.end] as usize,
+                below: below.collect(),
+                panel: storage,
+                ..front
+            };
+            front.into_parent.clear();
+            storage += panel::length(front.width(), front.size());
+            front
+        });
+        let mut fronts: Vec<Front> = fronts.collect();
+        for s in 0..fronts.len() {
+            if let Some(t) = fronts[s].parent {
+                fronts[s].into_parent = place_in(&fronts[s].below, &fronts[t]);
+            }
+        }
+        Symbolic {
+            interior,
+            interface: Vec::new(),
+            position,
+            fronts,
+            storage,
+        }
+    }
+
     /// The structure of a factor that another library computed. Each front is given as (first column, number of
     /// columns, rows below); the columns of all fronts form the interior. It serves solves only.
     pub(crate) fn of_factor(
@@ -260,3 +310,7 @@ fn place_in(rows: &[u32], t: &Front) -> Vec<u32> {
         })
         .collect()
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/cholesky/symbolic.rs"]
+mod tests;

@@ -32,9 +32,9 @@ impl Balance {
         let r = natural.r;
         let factor = match natural.shape.as_ref().filter(|s| s.team().is_some()) {
             Some(shape) => {
-                let n = shape.pattern.product(comm, &g, &g, |_| true);
+                let n = shape.product(comm, &g, &g, |_| true);
                 let factor = Gram::new(shape, n.clone());
-                Factor::Sparse(Refined::symmetric(factor, n).into())
+                Factor::Sparse(Refined::symmetric(shape, factor, n).into())
             }
             None => Factor::Dense(Semidefinite::new(&g.product(comm, &g, r, |_| true))),
         };

@@ -228,10 +228,8 @@ impl<'a> Springs<'a> {
                 .iter()
                 .zip(&on)
                 .for_each(|(&i, on)| chosen[i] = *on);
-            let mut a = shape
-                .pattern
-                .product(self.comm, all, &self.stiff, |i| chosen[i]);
-            for c in 0..a.n() {
+            let mut a = shape.product(self.comm, all, &self.stiff, |i| chosen[i]);
+            for c in (0..a.n()).filter(|&c| shape.has(c)) {
                 a.set_diagonal(c, a.get(c, c) + self.weak[c]);
             }
             let mut d = self.downhill(alpha, anchor, &stretch);

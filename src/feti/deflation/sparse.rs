@@ -8,9 +8,8 @@ use mpi::topology::SimpleCommunicator;
 use super::panels::Panels;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gtg::Side;
-use crate::feti::projector::pattern::Pattern;
 use crate::feti::projector::refined::Refined;
-use crate::feti::projector::shape::Shape;
+use crate::feti::projector::shape::{Shape, Sharing};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
@@ -27,10 +26,8 @@ impl Sparse {
     /// Factors `e`. Collective.
     pub fn new(shape: Rc<Shape>, e: Csr) -> Sparse {
         let factor = Gram::new(&shape, e.clone());
-        Sparse {
-            shape,
-            inverse: Refined::symmetric(factor, e),
-        }
+        let inverse = Refined::symmetric(&shape, factor, e);
+        Sparse { shape, inverse }
     }
 
     /// Number of independent columns.
@@ -67,14 +64,13 @@ pub fn product(
     let shape = match known {
         Some(shape) if shape.pattern.contains(&lists) => shape,
         Some(shape) if shape.pattern.n_bodies() == n => {
-            let before = shape.pattern.graph();
             for (k, list) in lists.iter_mut().enumerate() {
-                list.extend(before.row(k).0);
+                list.extend(shape.pattern.near(k));
                 *list = distinct(list.iter().copied());
             }
-            Shape::of(comm, Pattern::of_bodies(lists, &starts), 1, &[]).into()
+            Shape::new(comm, &lists, &starts, &Sharing::any()).into()
         }
-        _ => Shape::of(comm, Pattern::of_bodies(lists, &starts), 1, &[]).into(),
+        _ => Shape::new(comm, &lists, &starts, &Sharing::any()).into(),
     };
     let pattern = &shape.pattern;
     let mut e = pattern.zeros();

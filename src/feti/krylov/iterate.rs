@@ -170,8 +170,8 @@ pub fn iterate(
     rtol_of(control.tolerance / start)?;
     let counted = Start::now();
     let solved = {
-        let _running = system.run(control.observed.then_some(lambda));
         let is_cg = ksp.type_name()? == "cg";
+        let _running = system.run(control.observed.then_some(lambda), is_cg);
         let eigenvalue = control.watch.filter(|_| is_cg).map(|w| LargeEigenvalue {
             first: w.from,
             limit: w.limit,

@@ -2,6 +2,9 @@
 //!
 //! The projector P stands on both sides of both operators. Every Krylov method, flexible or pipelined, left or right
 //! preconditioned, therefore works in the space V = ker Gᵀ without knowing of it. P_2 is I if nothing is deflated.
+//!
+//! CG keeps its directions and residuals in V by itself, to the digits that P has. Where these are all, P stands only on
+//! the side where something enters V: A = Pᵀ F, and P M⁻¹.
 
 use std::cell::{Cell, Ref, RefCell, RefMut};
 
@@ -40,6 +43,8 @@ pub struct System {
 struct Running {
     /// The λ that it corrects, if a monitor may ask for the displacements.
     start: Option<PetscVec>,
+    /// Whether everything that it applies an operator to is in V.
+    stays: bool,
 }
 
 /// Marks the iteration as ended when it is dropped.
@@ -124,11 +129,20 @@ impl System {
     }
 
     /// Marks an iteration as running while the guard lives. `start` is the λ that it corrects, if monitors may ask for
-    /// it.
-    pub(crate) fn run(&self, start: Option<&PetscVec>) -> RunningGuard<'_> {
-        let start = start.cloned();
-        self.running.replace(Some(Running { start }));
+    /// it; `cg` says that the method is CG.
+    pub(crate) fn run(&self, start: Option<&PetscVec>, cg: bool) -> RunningGuard<'_> {
+        let plain = self.deflation.borrow().is_none();
+        let running = Running {
+            start: start.cloned(),
+            stays: cg && plain && self.dual().natural.is_exact(),
+        };
+        self.running.replace(Some(running));
         RunningGuard(self)
+    }
+
+    /// Whether an operator is applied to what is in V already.
+    fn stays(&self) -> bool {
+        self.running.borrow().as_ref().is_some_and(|r| r.stays)
     }
 
     /// The λ that the running iteration corrects; `None` if no iteration runs that monitors may look into.
@@ -206,9 +220,10 @@ impl System {
     pub(super) fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         self.heed()?;
         let dual = self.dual();
-        if dual.natural.r == 0 {
+        if dual.natural.r == 0 || self.stays() {
             dual.f(x, y)?;
             self.p2_transpose(y)?;
+            dual.p_transpose(y)?;
             return self.keep(x, y);
         }
         self.x.copy_from(x)?;
@@ -224,6 +239,10 @@ impl System {
         let dual = self.dual();
         if dual.natural.r == 0 && self.deflation.borrow().is_none() {
             return dual.m(x, y);
+        }
+        if self.stays() {
+            dual.m(x, y)?;
+            return dual.p(y);
         }
         self.y.copy_from(x)?;
         dual.p_transpose(&self.y)?; /*  x ← Pᵀ x         */

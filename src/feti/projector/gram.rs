@@ -4,6 +4,7 @@
 //! may be chosen; many by the crate's sparse Cholesky factorisation, whose order of elimination is that of the graph of
 //! all candidate rows and is found once.
 
+use std::cell::Cell;
 use std::rc::Rc;
 
 use super::pattern::Pattern;
@@ -114,6 +115,8 @@ pub struct Gram {
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
+    /// Whether a sparse factor has been tried and has no small eigenvalue.
+    pub(super) regular: Cell<bool>,
 }
 
 impl Gram {
@@ -150,22 +153,17 @@ impl Gram {
             unheld: dropped.iter().map(vector).collect(),
             dropped: dropped.iter().map(|&k| k as u32).collect(),
             factor: Factor::Dense(factor),
+            regular: Cell::new(false),
         }
     }
 
     fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
-        let mut diagonal = vec![0.0; a.n()];
-        for dof in team.own_dofs() {
-            diagonal[dof as usize] = a.get(dof as usize, dof as usize);
-        }
-        sum_all(team.comm(), &mut diagonal);
-        let own = team.own_dofs().map(|dof| dof as usize);
-        let mut scale = scale(&mut a, &diagonal, own);
+        let mut scale = scale_own_rows(team, &mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, team, &a, &scale);
         let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
         for &k in alone.iter().map(|m| &m.0).chain(hidden) {
-            a.set_diagonal(k as usize, OUT);
+            leave_out(team, &mut a, k);
         }
         let (factor, together) = SharedCholesky::semidefinite(&a, team.clone(), DEPENDENT);
         let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
@@ -189,6 +187,7 @@ impl Gram {
             factor: Factor::Sparse { factor, scale },
             dropped,
             unheld: alone.into_iter().map(|m| m.1).collect(),
+            regular: Cell::new(false),
         }
     }
 
@@ -197,9 +196,9 @@ impl Gram {
     /// few, or dependent beyond that after rounding. Collective.
     pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
         let team = shape.team()?;
-        let mut scale = scale_to_unit_diagonal(&mut a);
+        let mut scale = scale_own_rows(team, &mut a);
         for &k in &plain.dropped {
-            a.set_diagonal(k as usize, OUT);
+            leave_out(team, &mut a, k);
             scale[k as usize] = 0.0;
         }
         let (factor, more) = SharedCholesky::semidefinite(&a, team.clone(), WEIGHTED);
@@ -207,6 +206,7 @@ impl Gram {
             factor: Factor::Sparse { factor, scale },
             dropped: plain.dropped.clone(),
             unheld: Vec::new(),
+            regular: Cell::new(false),
         })
     }
 
@@ -248,6 +248,15 @@ impl Gram {
             Factor::Dense(factor) => factor.n(),
             Factor::Sparse { scale, .. } => scale.len(),
             Factor::Raised(raised) => raised.base().n(),
+        }
+    }
+
+    /// Whether no eigenvalue of the matrix, scaled to a unit diagonal, is small ([`weakest`](Gram::weakest) has been
+    /// asked).
+    pub fn is_regular(&self) -> bool {
+        match &self.factor {
+            Factor::Raised(raised) => raised.base().is_regular(),
+            _ => self.regular.get(),
         }
     }
 
@@ -319,6 +328,30 @@ fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
     factor.solve(&mut v);
     v[k] = 1.0;
     v
+}
+
+/// Leaves a column out.
+fn leave_out(team: &Team, a: &mut Csr, column: u32) {
+    if team.has(column) {
+        a.set_diagonal(column as usize, OUT);
+    }
+}
+
+/// The diagonal of a matrix of which each rank has its rows. Collective.
+pub(super) fn diagonal_of_own_rows(team: &Team, a: &Csr) -> Vec<f64> {
+    let mut diagonal = vec![0.0; a.n()];
+    for dof in team.own_dofs() {
+        diagonal[dof as usize] = a.get(dof as usize, dof as usize);
+    }
+    sum_all(team.comm(), &mut diagonal);
+    diagonal
+}
+
+/// A ← D⁻¹ A D⁻¹ with D² the diagonal of A, in the rows that this rank has; returns 1/D, one where the diagonal
+/// vanishes. Collective.
+fn scale_own_rows(team: &Team, a: &mut Csr) -> Vec<f64> {
+    let diagonal = diagonal_of_own_rows(team, a);
+    scale(a, &diagonal, team.own_dofs().map(|dof| dof as usize))
 }
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A; returns 1/D, one where the diagonal vanishes.

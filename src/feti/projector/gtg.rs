@@ -32,6 +32,9 @@ pub enum Side {
     Transposed,
 }
 
+/// A factor is exact if a vector loses less than this on its way through the matrix and back.
+const EXACT: f64 = 1e-11;
+
 /// (Gᵀ Q G)⁻¹.
 pub struct Gtg {
     solver: Solver,
@@ -67,31 +70,31 @@ struct Scaled {
 }
 
 impl Gtg {
-    /// The inverse for the rows of `gram` and the weight `q`, not Auto. `product` makes this rank's share of GᵀQG,
-    /// which has the pattern of `shape`. `chosen` makes a solver of the user's choice from it. Collective.
+    /// The inverse for the rows of `gram` and the weight `q`, not Auto, from G and QG; GᵀQG has the pattern of `shape`.
+    /// `chosen` makes a solver of the user's choice. Collective.
     pub fn new(
         session: &Session,
         (shape, gram): (&Shape, Rc<Gram>),
         q: ProjectorKind,
-        product: impl FnOnce() -> Csr,
+        [g, qg]: [&Rows; 2],
         prefix: &str,
-        chosen: impl FnOnce(&Gram, &Csr) -> Result<Distributed>,
+        chosen: impl FnOnce(&Gram) -> Result<Distributed>,
     ) -> Result<Gtg> {
-        let sum = |mut a: Csr| {
-            sum_all(session.comm(), &mut a.val);
-            a
-        };
+        let comm = session.comm();
         let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
         let solver = match q {
             _ if Options::new(session, prefix).any_but("redundancy")? => {
-                Solver::Chosen(chosen(&gram, &product())?.into())
+                Solver::Chosen(chosen(&gram)?.into())
             }
             ProjectorKind::Identity if gram.is_sparse() => Solver::Own,
-            _ if gram.is_sparse() => match Refined::weighted(shape, sum(product()), &gram) {
-                Ok(factor) => Solver::Weighted(factor.into()),
-                Err(a) => petsc(a)?,
-            },
-            _ => petsc(sum(product()))?,
+            _ if gram.is_sparse() => {
+                let both = shape.product_and_transpose(comm, g, qg);
+                match Refined::weighted(shape, both, &gram) {
+                    Ok(factor) => Solver::Weighted(factor.into()),
+                    Err(a) => petsc(shape.gathered(comm, a))?,
+                }
+            }
+            _ => petsc(shape.product(comm, g, qg, |_| true))?,
         };
         let r = gram.n();
         Ok(Gtg {
@@ -105,6 +108,15 @@ impl Gtg {
     /// Whether ranks share a factor that solves at once.
     pub fn is_shared(&self) -> bool {
         self.shared().is_some()
+    }
+
+    /// Whether a factor of many columns solves to nearly all digits.
+    pub fn is_exact(&self) -> bool {
+        match &self.solver {
+            Solver::Own => self.gram.is_regular(),
+            Solver::Weighted(factor) => factor.plain().is_some() && factor.defect <= EXACT,
+            Solver::Petsc(_) | Solver::Chosen(_) => false,
+        }
     }
 
     /// Vectors go to the shared factor this way from now on.

@@ -46,6 +46,7 @@ impl Gram {
             least = least.min(before / after);
             // What is not a number is not regular, and no motion.
             if least > REGULAR || !after.is_finite() {
+                self.regular.set(least > REGULAR);
                 return None;
             }
             shares.iter_mut().for_each(|x| *x /= after);

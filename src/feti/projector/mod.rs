@@ -13,6 +13,7 @@ mod motions;
 pub mod natural;
 mod numbers;
 pub mod pattern;
+pub mod products;
 mod raised;
 pub mod refined;
 pub mod rows;

@@ -18,15 +18,14 @@ use super::gram::Gram;
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::numbers::Numbers;
-use super::pattern::Pattern;
+use super::pattern::meeting;
 use super::rows::{RowEntry, Rows};
-use super::shape::Shape;
+use super::shape::{Shape, Sharing};
 use super::spread::Spread;
 use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
-use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{any, exchange, gather_all, max_all};
@@ -142,8 +141,9 @@ impl NaturalCoarse {
         if r > 0 {
             natural.all = natural.all_rows(stiffness);
             let start = &space.kernel_start;
-            let pattern = Pattern::new(comm, &natural.all, &natural.all, start);
-            natural.shape = Some(Shape::of(comm, pattern, copies, &space.owner));
+            let lists = meeting(comm, &natural.all, &natural.all, start);
+            let sharing = natural.sharing(stiffness);
+            natural.shape = Some(Shape::new(comm, &lists, start, &sharing));
             natural.spread = spread(comm, problem, stiffness);
             natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;
@@ -171,6 +171,11 @@ impl NaturalCoarse {
             true => self.weighted(problem, stiffness, preconditioner, MENDED),
             false => Ok(()),
         }
+    }
+
+    /// Whether P is a projection to as many digits as there are: what is in its range stays there.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.gtg.as_ref().is_some_and(Gtg::is_exact)
     }
 
     /// Whether P is a projection to more digits than an iteration needs.
@@ -211,17 +216,16 @@ impl NaturalCoarse {
             ProjectorKind::Preconditioner => {
                 let graph = self.graph(problem, stiffness);
                 self.wide.get_or_init(|| {
-                    let pattern = Pattern::of_bodies(graph.second(), start);
-                    Shape::of(comm, pattern, self.copies, &stiffness.space.owner)
+                    Shape::new(comm, &graph.second(), start, &self.sharing(stiffness))
                 })
             }
             _ => self.shape.as_ref().expect("a body floats"),
         };
-        let product = || shape.pattern.product_here(g, qg, |_| true);
-        let chosen = |gram: &Gram, here: &Csr| {
+        let chosen = |gram: &Gram| {
+            let here = shape.pattern.product_here(g, qg, |_| true);
             Distributed::new(
                 session,
-                (&shape.pattern, here),
+                (&shape.pattern, &here),
                 [g, qg],
                 (
                     &gram.dropped,
@@ -235,7 +239,7 @@ impl NaturalCoarse {
             session,
             (shape, gram),
             self.projector,
-            product,
+            [g, qg],
             &self.prefix,
             chosen,
         )?;
@@ -265,6 +269,15 @@ impl NaturalCoarse {
             *known = Some(Spread::new(session, team, &columns)?.into());
         }
         Ok(known.clone())
+    }
+
+    /// How ranks share the factors.
+    fn sharing<'a>(&'a self, stiffness: &'a Stiffness) -> Sharing<'a> {
+        Sharing {
+            copies: self.copies,
+            home: &stiffness.space.owner,
+            rows: Some(&self.all),
+        }
     }
 
     /// The graph of the bodies. Collective when it is first asked for.

@@ -5,22 +5,15 @@
 //! subtracted from. Ranks send the entries that changed to the owners of the rows.
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use super::pattern::Pattern;
+use super::products::{Outgoing, Sent};
 use super::rows::Rows;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
+use crate::linalg::sorted::distinct;
 use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{exchange_words, sum_all};
-
-/// An entry that another rank has sent.
-#[derive(Debug, Clone, Copy)]
-struct Sent {
-    entry: usize,
-    rank: usize,
-    value: f64,
-}
+use crate::parallel::exchange::sum_all;
 
 /// GᵀG for the rows that hold.
 #[derive(Debug, Default)]
@@ -50,22 +43,28 @@ impl Numbers {
             self.chosen = vec![false; rows.n()];
             self.share = vec![0.0; out.val.len()];
         }
-        let mut touched = vec![false; pattern.n_bodies()];
+        let mut touched: Vec<u32> = Vec::new();
         for i in (0..rows.n()).filter(|&i| chosen[i] != self.chosen[i]) {
-            let columns = rows.entries(i).0.iter();
-            columns.for_each(|&c| touched[pattern.bodies()[c as usize] as usize] = true);
+            for &column in rows.entries(i).0 {
+                let body = pattern.bodies()[column as usize];
+                // Columns of a body follow each other.
+                if touched.last() != Some(&body) {
+                    touched.push(body);
+                }
+            }
         }
+        let touched = distinct(touched);
         self.chosen.copy_from_slice(chosen);
         let team = team.filter(|team| team.is_whole(comm));
         let before = team.map(|team| self.of_others(pattern, team, &touched));
         for span in pattern.blocks_between(&touched).map(|b| b.1) {
             self.share[span].fill(0.0);
         }
-        let on = |body: u32| touched[body as usize];
+        let on = |body: u32| touched.binary_search(&body).is_ok();
         pattern.add_product(&mut self.share, (rows, rows), |i| chosen[i], on);
         match (team, before) {
             (Some(team), Some(before)) => {
-                self.exchange(team, &before);
+                self.exchange(pattern, team, &before);
                 self.sum_of_own(pattern, team, &touched);
                 out.val.copy_from_slice(&self.sum);
             }
@@ -77,39 +76,28 @@ impl Numbers {
         out
     }
 
-    /// The owner and the present value of each entry between these bodies in a row that another rank has.
-    fn of_others(
-        &self,
-        pattern: &Pattern,
-        team: &Team,
-        touched: &[bool],
-    ) -> Vec<(usize, usize, f64)> {
+    /// The row, the place and the present value of each entry between these bodies in a row that another rank has.
+    fn of_others(&self, pattern: &Pattern, team: &Team, touched: &[u32]) -> Vec<(u32, usize, f64)> {
         let blocks = pattern.blocks_between(touched);
         let others = blocks.filter(|(row, _)| !team.has(*row));
-        let entries = others.flat_map(|(row, span)| {
-            let owner = team.place(row).rank as usize;
-            span.map(move |k| (owner, k, self.share[k]))
-        });
+        let entries = others.flat_map(|(row, span)| span.map(move |k| (row, k, self.share[k])));
         entries.collect()
     }
 
     /// Sends the entries that differ from what they were, and notes what others send.
-    fn exchange(&mut self, team: &Team, before: &[(usize, usize, f64)]) {
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); team.comm().size() as usize];
-        for &(owner, k, old) in before {
+    fn exchange(&mut self, pattern: &Pattern, team: &Team, before: &[(u32, usize, f64)]) {
+        let mut outgoing = Outgoing::new(team);
+        for &(row, k, old) in before {
             if self.share[k] != old {
-                outgoing[owner].extend([k as u64, self.share[k].to_bits()]);
+                outgoing.add(row, pattern.column(k), self.share[k]);
             }
         }
         let known = self.sent.len();
-        for (rank, words) in exchange_words(team.comm(), outgoing).iter().enumerate() {
-            for pair in words.chunks_exact(2) {
-                let (entry, value) = (pair[0] as usize, f64::from_bits(pair[1]));
-                let place = |s: &Sent| (s.entry, s.rank);
-                match self.sent[..known].binary_search_by_key(&(entry, rank), place) {
-                    Ok(at) => self.sent[at].value = value,
-                    Err(_) => self.sent.push(Sent { entry, rank, value }),
-                }
+        for new in outgoing.send(pattern) {
+            let place = |s: &Sent| (s.entry, s.rank);
+            match self.sent[..known].binary_search_by_key(&(new.entry, new.rank), place) {
+                Ok(at) => self.sent[at].value = new.value,
+                Err(_) => self.sent.push(new),
             }
         }
         if self.sent.len() > known {
@@ -118,7 +106,7 @@ impl Numbers {
     }
 
     /// Sums the shares of the rows that this rank has.
-    fn sum_of_own(&mut self, pattern: &Pattern, team: &Team, touched: &[bool]) {
+    fn sum_of_own(&mut self, pattern: &Pattern, team: &Team, touched: &[u32]) {
         self.sum.resize(self.share.len(), 0.0);
         let blocks = pattern.blocks_between(touched);
         for (_, span) in blocks.filter(|(row, _)| team.has(*row)) {

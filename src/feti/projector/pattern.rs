@@ -9,10 +9,10 @@ use super::rows::Rows;
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
 use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{gather_all, sum_all};
+use crate::parallel::exchange::gather_all;
 
-/// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. The same on every
-/// rank.
+/// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. A rank may have the
+/// rows of some bodies alone; the others are empty there.
 #[derive(Debug)]
 pub struct Pattern {
     /// First column of each body, and the end; length n_bodies + 1.
@@ -26,39 +26,39 @@ pub struct Pattern {
     col: Vec<u32>,
 }
 
-impl Pattern {
-    /// The pattern of AᵀB for rows that are distributed alike, and of the diagonal. `start` has the first column of
-    /// each body. Collective.
-    pub fn new(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Pattern {
-        let n = start.len() - 1;
-        let body = body_of_columns(start);
-        let mut pairs: Vec<u64> = Vec::new();
-        for i in 0..a.n() {
-            let (left, right) = (a.entries(i).0, b.entries(i).0);
-            for p in runs(&body, left) {
-                for q in runs(&body, right) {
-                    let (p, q) = (body[left[p.start] as usize], body[right[q.start] as usize]);
-                    pairs.push(u64::from(p) << 32 | u64::from(q));
-                }
-            }
-            // Rows of one face meet the same bodies.
-            if pairs.len() > 1 << 20 {
-                pairs = distinct(std::mem::take(&mut pairs));
+/// For each body those that it meets in rows of A and of B, which are distributed alike, and itself, increasing. `start`
+/// has the first column of each body. The same on every rank. Collective.
+pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Vec<Vec<u32>> {
+    let n = start.len() - 1;
+    let body = body_of_columns(start);
+    let mut pairs: Vec<u64> = Vec::new();
+    for i in 0..a.n() {
+        let (left, right) = (a.entries(i).0, b.entries(i).0);
+        for p in runs(&body, left) {
+            for q in runs(&body, right) {
+                let (p, q) = (body[left[p.start] as usize], body[right[q.start] as usize]);
+                pairs.push(u64::from(p) << 32 | u64::from(q));
             }
         }
-        let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
-        let all = gather_all(comm, &distinct(pairs)).concat();
-        clock::timed(Phase::NaturalOrder, || {
-            for pair in all {
-                lists[(pair >> 32) as usize].push(pair as u32);
-            }
-            let lists = lists.into_iter().map(distinct).collect();
-            Pattern::of_bodies(lists, start)
-        })
+        // Rows of one face meet the same bodies.
+        if pairs.len() > 1 << 20 {
+            pairs = distinct(std::mem::take(&mut pairs));
+        }
     }
+    let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
+    let all = gather_all(comm, &distinct(pairs)).concat();
+    clock::timed(Phase::NaturalOrder, || {
+        for pair in all {
+            lists[(pair >> 32) as usize].push(pair as u32);
+        }
+        lists.into_iter().map(distinct).collect()
+    })
+}
 
-    /// The pattern with entries for each body and those in its list, which increases and contains the body itself.
-    pub fn of_bodies(lists: Vec<Vec<u32>>, start: &[usize]) -> Pattern {
+impl Pattern {
+    /// The pattern with entries for each body and those in its list, which increases and contains the body itself, in
+    /// the rows of bodies that are `here`.
+    pub fn new(lists: &[Vec<u32>], start: &[usize], here: impl Fn(usize) -> bool) -> Pattern {
         let mut pattern = Pattern {
             start: start.to_vec(),
             body: body_of_columns(start),
@@ -66,15 +66,16 @@ impl Pattern {
             row_ptr: vec![0],
             col: Vec::new(),
         };
-        for (k, list) in lists.into_iter().enumerate() {
+        for (k, list) in lists.iter().enumerate() {
+            let list: &[u32] = if here(k) { list } else { &[] };
             let mut length = 0;
-            let mut near = Vec::new();
-            for &other in &list {
+            let mut near = Vec::with_capacity(list.len());
+            for &other in list {
                 near.push((other, length));
                 length += pattern.columns(other as usize).len() as u32;
             }
             for _ in pattern.columns(k) {
-                for &other in &list {
+                for &other in list {
                     let columns = pattern.columns(other as usize);
                     pattern.col.extend(columns.map(|c| c as u32));
                 }
@@ -82,6 +83,7 @@ impl Pattern {
             }
             pattern.near.push(near);
         }
+        pattern.col.shrink_to_fit();
         pattern
     }
 
@@ -105,18 +107,9 @@ impl Pattern {
         &self.body
     }
 
-    /// The graph of the bodies, without numbers.
-    pub fn graph(&self) -> Csr {
-        let mut out = Csr {
-            row_ptr: vec![0],
-            ..Csr::default()
-        };
-        for near in &self.near {
-            out.col.extend(near.iter().map(|n| n.0));
-            out.row_ptr.push(out.col.len());
-        }
-        out.val = vec![0.0; out.col.len()];
-        out
+    /// The bodies in the rows of a body.
+    pub fn near(&self, body: usize) -> impl Iterator<Item = u32> + '_ {
+        self.near[body].iter().map(|n| n.0)
     }
 
     /// A matrix of zeros.
@@ -162,17 +155,23 @@ impl Pattern {
         near[at.expect("the pattern has the rows")].1 as usize
     }
 
-    /// AᵀB over the rows that `chosen` selects. Collective.
-    pub fn product(
-        &self,
-        comm: &SimpleCommunicator,
-        a: &Rows,
-        b: &Rows,
-        chosen: impl Fn(usize) -> bool,
-    ) -> Csr {
-        let mut product = self.product_here(a, b, chosen);
-        sum_all(comm, &mut product.val);
-        product
+    /// The place of an entry.
+    pub fn entry(&self, row: u32, column: u32) -> usize {
+        let of = self.body[column as usize];
+        let place = self.place(self.body[row as usize], of);
+        self.row_ptr[row as usize] + place + column as usize - self.start[of as usize]
+    }
+
+    /// The row of each entry.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, Range<usize>)> + '_ {
+        let rows = self.row_ptr.windows(2).enumerate();
+        let some = rows.filter(|(_, ends)| ends[0] < ends[1]);
+        some.map(|(row, ends)| (row as u32, ends[0]..ends[1]))
+    }
+
+    /// The column of an entry.
+    pub fn column(&self, entry: usize) -> u32 {
+        self.col[entry]
     }
 
     /// This rank's share of AᵀB over the rows that `chosen` selects.
@@ -215,17 +214,17 @@ impl Pattern {
         }
     }
 
-    /// (row, its entries) for the blocks between these bodies.
+    /// (row, its entries) for the blocks between these bodies, which increase and are here.
     pub fn blocks_between<'a>(
         &'a self,
-        on: &'a [bool],
+        bodies: &'a [u32],
     ) -> impl Iterator<Item = (u32, Range<usize>)> + 'a {
-        let bodies = (0..self.near.len()).filter(|&p| on[p]);
-        bodies.flat_map(move |p| {
-            let near = self.near[p].iter().filter(|n| on[n.0 as usize]);
+        bodies.iter().flat_map(move |&p| {
+            let near = self.near[p as usize].iter();
+            let near = near.filter(|n| bodies.binary_search(&n.0).is_ok());
             near.flat_map(move |&(q, place)| {
                 let width = self.columns(q as usize).len();
-                self.columns(p).map(move |row| {
+                self.columns(p as usize).map(move |row| {
                     let first = self.row_ptr[row] + place as usize;
                     (row as u32, first..first + width)
                 })

@@ -9,6 +9,7 @@
 //!
 //! because Nᵀ(A + C Cᵀ)x = WᵀCᵀx must be Nᵀb. The other motions, less what N takes of them, stay free.
 
+use std::cell::Cell;
 use std::rc::Rc;
 
 use faer::prelude::Solve;
@@ -123,6 +124,7 @@ impl Gram {
         Some(Gram {
             dropped: left.iter().map(|&m| self.dropped[m]).collect(),
             unheld: taken.left,
+            regular: Cell::new(false),
             factor: Factor::Raised(Box::new(Raised {
                 base: self.clone(),
                 rows,

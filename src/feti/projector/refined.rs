@@ -4,10 +4,14 @@
 //! its symmetric part, which is what is factored. A factor that leaves out columns without a choice of pivots may keep
 //! small ones. A solution for a known vector tells how many steps are needed; as a rule it is none.
 
-use super::gram::Gram;
+use std::rc::Rc;
+
+use super::gram::{diagonal_of_own_rows, Gram};
 use super::gtg::Side;
 use super::shape::Shape;
+use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
+use crate::parallel::exchange::sum_all;
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU
 /// factorisation.
@@ -21,9 +25,11 @@ pub fn probe(i: usize) -> f64 {
     1.0 + ((i * 7919) % 13) as f64 / 13.0
 }
 
-/// A matrix A, and a factor of it or of its symmetric part.
+/// A matrix A, and a factor of it or of its symmetric part. A rank has the rows that it has in the factor.
 pub struct Refined {
     factor: Gram,
+    /// The ranks that share them; `None` if this rank has all.
+    team: Option<Rc<Team>>,
     matrix: Csr,
     /// Aᵀ, if A is not symmetric and steps are needed.
     transpose: Option<Csr>,
@@ -34,31 +40,31 @@ pub struct Refined {
 }
 
 impl Refined {
-    /// Factors `a` = GᵀQG, which has the pattern of `shape`; `plain` says what the rows hold. Gives `a` back if the
-    /// factor is not as good as one with pivots would be, or columns are few.
-    pub fn weighted(shape: &Shape, a: Csr, plain: &Gram) -> Result<Refined, Csr> {
-        let transpose = transposed(&a);
+    /// Factors A = GᵀQG, which has the pattern of `shape` and is given with its transpose; `plain` says what the rows
+    /// hold. Gives A back if the factor is not as good as one with pivots would be, or columns are few. Collective.
+    pub fn weighted(shape: &Shape, [a, transpose]: [Csr; 2], plain: &Gram) -> Result<Refined, Csr> {
         let mut symmetric = a.clone();
         let both = symmetric.val.iter_mut().zip(&transpose.val);
         both.for_each(|(s, t)| *s = 0.5 * (*s + t));
         let Some(factor) = Gram::weighted(shape, symmetric, plain) else {
             return Err(a);
         };
-        match Refined::of(factor, a, Some(transpose)) {
+        match Refined::of(shape, factor, a, Some(transpose)) {
             (refined, true) => Ok(refined),
             (refined, false) => Err(refined.matrix),
         }
     }
 
-    /// With the factor of a symmetric matrix.
-    pub fn symmetric(factor: Gram, matrix: Csr) -> Refined {
-        Refined::of(factor, matrix, None).0
+    /// With the factor of a symmetric matrix of this shape. Collective.
+    pub fn symmetric(shape: &Shape, factor: Gram, matrix: Csr) -> Refined {
+        Refined::of(shape, factor, matrix, None).0
     }
 
     /// With as many steps as are needed, and whether so many do.
-    fn of(factor: Gram, matrix: Csr, transpose: Option<Csr>) -> (Refined, bool) {
+    fn of(shape: &Shape, factor: Gram, matrix: Csr, transpose: Option<Csr>) -> (Refined, bool) {
         let mut refined = Refined {
             factor,
+            team: shape.team().cloned(),
             matrix,
             transpose,
             steps: 0,
@@ -75,15 +81,18 @@ impl Refined {
 
     /// Finds out how many steps are needed. Returns whether so many do.
     fn enough(&mut self) -> bool {
-        let root: Vec<f64> = self.matrix.diagonal().iter().map(|d| d.sqrt()).collect();
+        let diagonal = match &self.team {
+            Some(team) => diagonal_of_own_rows(team, &self.matrix),
+            None => self.matrix.diagonal(),
+        };
+        let root: Vec<f64> = diagonal.iter().map(|d| d.sqrt()).collect();
         let mut x: Vec<f64> = (0..root.len())
             .map(probe)
             .zip(&root)
             .map(|(x, d)| if *d > 0.0 { x / d } else { 0.0 })
             .collect();
         self.without_dropped(&mut x);
-        let mut b = vec![0.0; x.len()];
-        self.matrix.mul(&x, &mut b);
+        let mut b = self.product(&self.matrix, &x);
         self.without_dropped(&mut b);
         let scaled = |v: &[f64], power: i32| {
             let entries = v.iter().zip(&root).filter(|e| *e.1 > 0.0);
@@ -117,20 +126,36 @@ impl Refined {
         dropped.for_each(|&k| x[k as usize] = 0.0);
     }
 
-    /// b − A x, or b − Aᵀ x.
+    /// A x. Collective.
+    fn product(&self, a: &Csr, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        match &self.team {
+            Some(team) => {
+                for row in team.own_dofs() {
+                    let (col, val) = a.row(row as usize);
+                    let products = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]);
+                    y[row as usize] = products.sum();
+                }
+                sum_all(team.comm(), &mut y);
+            }
+            None => a.mul(x, &mut y),
+        }
+        y
+    }
+
+    /// b − A x, or b − Aᵀ x. Collective.
     fn rest(&self, x: &[f64], b: &[f64], side: Side) -> Vec<f64> {
         let a = match (side, &self.transpose) {
             (Side::Transposed, Some(transpose)) => transpose,
             _ => &self.matrix,
         };
-        let mut rest = vec![0.0; x.len()];
-        a.mul(x, &mut rest);
+        let mut rest = self.product(a, x);
         rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
         self.without_dropped(&mut rest);
         rest
     }
 
-    /// x ← A⁻¹ x or A⁻ᵀ x, zero in the columns that are left out.
+    /// x ← A⁻¹ x or A⁻ᵀ x, zero in the columns that are left out. Collective.
     pub fn solve(&self, x: &mut [f64], side: Side) {
         let b = x.to_vec();
         self.factor.solve(x);
@@ -140,17 +165,6 @@ impl Refined {
             x.iter_mut().zip(&rest).for_each(|(x, r)| *x += r);
         }
     }
-}
-
-/// Aᵀ for a pattern that is symmetric.
-fn transposed(a: &Csr) -> Csr {
-    let mut out = a.clone();
-    for i in 0..a.n() {
-        for k in a.row_ptr[i]..a.row_ptr[i + 1] {
-            out.val[k] = a.get(a.col[k] as usize, i);
-        }
-    }
-    out
 }
 
 #[cfg(test)]

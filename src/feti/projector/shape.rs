@@ -7,50 +7,70 @@ use mpi::traits::Communicator;
 
 use super::gram::FEW;
 use super::pattern::Pattern;
+use super::rows::Rows;
 use crate::cholesky::dissection::part_of_dissection;
 use crate::cholesky::symbolic::Symbolic;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
+use crate::linalg::sorted::distinct;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::gather_all;
 
 /// Where GᵀG has entries, and in which order it is factored.
 pub struct Shape {
-    /// The entries for all candidate rows.
+    /// The entries for all candidate rows, in the rows that this rank has in the factor and in those that it adds to.
     pub pattern: Pattern,
     /// The order and the ranks that share the factor, if there are many columns.
     team: Option<Rc<Team>>,
 }
 
+/// How ranks share the factors of a shape.
+pub struct Sharing<'a> {
+    /// Number of copies of a factor.
+    pub copies: usize,
+    /// The rank of each body; empty if that does not matter.
+    pub home: &'a [u32],
+    /// What this rank adds to products comes from these rows; `None`: from anywhere.
+    pub rows: Option<&'a Rows>,
+}
+
+impl Sharing<'_> {
+    /// One factor, to which every rank may add anything.
+    pub fn any() -> Sharing<'static> {
+        Sharing {
+            copies: 1,
+            home: &[],
+            rows: None,
+        }
+    }
+}
+
 impl Shape {
-    /// The shape of matrices with this pattern; there are to be `copies` of a factor. `home` has the rank of each body,
-    /// or nothing if that does not matter. Collective.
-    pub fn of(comm: &SimpleCommunicator, pattern: Pattern, copies: usize, home: &[u32]) -> Shape {
-        let r = pattern.bodies().len();
-        // Whole bodies are ordered: the columns of one are all coupled.
-        let team = (r > FEW).then(|| {
-            clock::timed(Phase::NaturalOrder, || {
-                let graph = pattern.graph();
-                let floats = |b: &u32| !pattern.columns(*b as usize).is_empty();
-                // What meets more than half of all bodies comes last: no cut would separate it from anything.
-                let everywhere = |b: &u32| 2 * graph.row(*b as usize).0.len() > graph.n();
-                let (last, floating): (Vec<u32>, Vec<u32>) =
-                    (0..graph.n() as u32).filter(floats).partition(everywhere);
-                let columns = |b: &u32| pattern.columns(*b as usize).map(|c| c as u32);
-                let sets = dissected(comm, &graph, &floating).into_iter();
-                let sets = sets.chain((!last.is_empty()).then_some(last));
-                let sets: Vec<Vec<u32>> = sets
-                    .map(|set| set.iter().flat_map(columns).collect())
-                    .collect();
-                let symbolic = Symbolic::with_supernodes(&pattern.zeros(), &[], &sets);
-                let bodies = pattern.bodies().iter();
-                let home: Vec<u32> = match home.is_empty() {
-                    true => Vec::new(),
-                    false => bodies.map(|&b| home[b as usize]).collect(),
+    /// The shape of matrices with entries for each body and those in its list, which increases and contains the body
+    /// itself. `start` has the first column of each body. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        lists: &[Vec<u32>],
+        start: &[usize],
+        sharing: &Sharing<'_>,
+    ) -> Shape {
+        let r = *start.last().expect("there is an end");
+        let order = || team(comm, lists, start, sharing).into();
+        let team: Option<Rc<Team>> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, order));
+        let pattern = match (&team, sharing.rows) {
+            (Some(team), Some(rows)) if team.is_whole(comm) => {
+                let columns = distinct(rows.columns().iter().copied());
+                // A rank has all columns of a body or none.
+                let here = |body: usize| {
+                    let columns_of = start[body] as u32..start[body + 1] as u32;
+                    let first = columns.partition_point(|&c| c < columns_of.start);
+                    let touched = columns.get(first).is_some_and(|c| columns_of.contains(c));
+                    touched || (!columns_of.is_empty() && team.has(columns_of.start))
                 };
-                Team::new(comm, symbolic, copies, &home).into()
-            })
-        });
+                Pattern::new(lists, start, here)
+            }
+            _ => Pattern::new(lists, start, |_| true),
+        };
         Shape { pattern, team }
     }
 
@@ -58,6 +78,52 @@ impl Shape {
     pub fn team(&self) -> Option<&Rc<Team>> {
         self.team.as_ref()
     }
+
+    /// Whether this rank has the row of a column in the factor; of few columns it has all.
+    pub fn has(&self, column: usize) -> bool {
+        let team = self.team.as_ref();
+        team.is_none_or(|team| team.has(column as u32))
+    }
+}
+
+/// The order of elimination, and who has which part. Collective.
+fn team(
+    comm: &SimpleCommunicator,
+    lists: &[Vec<u32>],
+    start: &[usize],
+    sharing: &Sharing<'_>,
+) -> Team {
+    // Whole bodies are ordered: the columns of one are all coupled.
+    let graph = graph(lists);
+    let columns = |b: u32| start[b as usize]..start[b as usize + 1];
+    let floats = |b: &u32| !columns(*b).is_empty();
+    // What meets more than half of all bodies comes last: no cut would separate it from anything.
+    let everywhere = |b: &u32| 2 * graph.row(*b as usize).0.len() > graph.n();
+    let (last, floating): (Vec<u32>, Vec<u32>) =
+        (0..graph.n() as u32).filter(floats).partition(everywhere);
+    let mut sets = dissected(comm, &graph, &floating);
+    sets.extend((!last.is_empty()).then_some(last));
+    let r = *start.last().expect("there is an end");
+    let symbolic = Symbolic::with_blocks(&graph, &sets, r, columns);
+    let mut home = Vec::new();
+    for (body, &rank) in sharing.home.iter().enumerate() {
+        home.resize(start[body + 1], rank);
+    }
+    Team::new(comm, symbolic, sharing.copies, &home)
+}
+
+/// The graph of the bodies, without numbers.
+fn graph(lists: &[Vec<u32>]) -> Csr {
+    let mut out = Csr {
+        row_ptr: vec![0],
+        ..Csr::default()
+    };
+    for list in lists {
+        out.col.extend(list);
+        out.row_ptr.push(out.col.len());
+    }
+    out.val = vec![0.0; out.col.len()];
+    out
 }
 
 /// The nested dissection of these bodies, of which each rank makes a part. Collective.

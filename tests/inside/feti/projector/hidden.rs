@@ -1,9 +1,9 @@
 //! Unit tests of `src/feti/projector/hidden.rs`.
 
 use super::*;
-use crate::feti::projector::pattern::Pattern;
+use crate::feti::projector::pattern::meeting;
 use crate::feti::projector::rows::Rows;
-use crate::feti::projector::shape::Shape;
+use crate::feti::projector::shape::{Shape, Sharing};
 use crate::testing::with_session;
 
 /// Bodies with two motions each, more than dense algebra is for: a chain, and a last one that meets them all, so that
@@ -51,8 +51,13 @@ fn the_motion_of_a_column_that_is_left_out_is_found() {
         let start: Vec<usize> = (0..=BODIES as usize).map(|b| 2 * b).collect();
         for slow in [1e-1, 1e-2, 1e-3, 1e-4] {
             let g = rows(slow);
-            let shape = Shape::of(comm, Pattern::new(comm, &g, &g, &start), 1, &[]);
-            let product = shape.pattern.product(comm, &g, &g, |_| true);
+            let shape = Shape::new(
+                comm,
+                &meeting(comm, &g, &g, &start),
+                &start,
+                &Sharing::any(),
+            );
+            let product = shape.product(comm, &g, &g, |_| true);
             let gram = Gram::without(&shape, product, &[0]);
             assert_eq!(gram.dropped, [0]);
             let [motion] = &gram.unheld[..] else {
@@ -82,8 +87,13 @@ fn what_a_row_holds_is_no_motion() {
         entries.push((n, 0, 1e-3));
         let g = Rows::from_triplets(g.n() + 1, entries);
         let start: Vec<usize> = (0..=BODIES as usize).map(|b| 2 * b).collect();
-        let shape = Shape::of(comm, Pattern::new(comm, &g, &g, &start), 1, &[]);
-        let gram = Gram::new(&shape, shape.pattern.product(comm, &g, &g, |_| true));
+        let shape = Shape::new(
+            comm,
+            &meeting(comm, &g, &g, &start),
+            &start,
+            &Sharing::any(),
+        );
+        let gram = Gram::new(&shape, shape.product(comm, &g, &g, |_| true));
         assert!(gram.unheld.is_empty() && gram.weakest().is_none());
     });
 }

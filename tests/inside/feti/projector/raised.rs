@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::feti::projector::numbers::Numbers;
-use crate::feti::projector::pattern::Pattern;
+use crate::feti::projector::pattern::meeting;
 use crate::feti::projector::rows::Rows;
-use crate::feti::projector::shape::Shape;
+use crate::feti::projector::shape::{Shape, Sharing};
 use crate::testing::with_session;
 
 /// Bodies in a row, with two motions each: more motions than dense algebra is for.
@@ -38,7 +38,7 @@ fn rows() -> Rows {
 /// The shape of GᵀG, and what computes it.
 fn shape(comm: &mpi::topology::SimpleCommunicator, g: &Rows) -> Shape {
     let start: Vec<usize> = (0..=BODIES as usize).map(|b| 2 * b).collect();
-    Shape::of(comm, Pattern::new(comm, g, g, &start), 1, &[])
+    Shape::new(comm, &meeting(comm, g, g, &start), &start, &Sharing::any())
 }
 
 /// Whether row `i` holds at first: not those of three bodies on one side, and of two single ones.
@@ -72,7 +72,7 @@ fn rows_that_are_put_back_need_no_other_factor() {
         let g = rows();
         let shape = shape(comm, &g);
         let gram = |chosen: &[bool]| {
-            let product = shape.pattern.product(comm, &g, &g, |i| chosen[i]);
+            let product = shape.product(comm, &g, &g, |i| chosen[i]);
             Rc::new(Gram::new(&shape, product))
         };
         let mut chosen: Vec<bool> = (0..g.n()).map(|i| at_first(&g, i)).collect();
@@ -149,7 +149,7 @@ fn numbers_that_are_renewed_are_those_computed_at_once() {
                 .map(|i| (i * 31 + 7) % 41 != round && (i * 17) % 53 != round / 2)
                 .collect();
             let renewed = numbers.renewed(comm, (&shape.pattern, None), &g, &chosen);
-            let once = shape.pattern.product(comm, &g, &g, |i| chosen[i]);
+            let once = shape.product(comm, &g, &g, |i| chosen[i]);
             assert_eq!(renewed.val, once.val, "round {round}");
         }
     });

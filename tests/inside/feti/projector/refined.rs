@@ -1,8 +1,10 @@
 //! Unit tests of `src/feti/projector/refined.rs`.
 
 use super::*;
-use crate::feti::projector::pattern::Pattern;
+use crate::feti::projector::pattern::meeting;
+use crate::feti::projector::products::transposed;
 use crate::feti::projector::rows::Rows;
+use crate::feti::projector::shape::Sharing;
 use crate::testing::with_session;
 
 /// Bodies in a row, with two motions each: more motions than dense algebra is for.
@@ -30,13 +32,18 @@ fn with_matrix(skew: f64, test: impl Fn(Result<Refined, Csr>, &Csr) + Send + Syn
         let comm = session.comm();
         let g = rows();
         let start: Vec<usize> = (0..=BODIES).map(|b| 2 * b).collect();
-        let shape = Shape::of(comm, Pattern::new(comm, &g, &g, &start), 1, &[]);
-        let plain = Gram::new(&shape, shape.pattern.product(comm, &g, &g, |_| true));
+        let shape = Shape::new(
+            comm,
+            &meeting(comm, &g, &g, &start),
+            &start,
+            &Sharing::any(),
+        );
+        let plain = Gram::new(&shape, shape.product(comm, &g, &g, |_| true));
         assert!(plain.is_sparse() && plain.dropped.is_empty());
         let mut weighted = g.clone();
         let weights: Vec<f64> = (0..g.n()).map(|i| 10f64.powi(i as i32 % 5 - 2)).collect();
         weighted.scale_rows(&weights);
-        let mut a = shape.pattern.product(comm, &g, &weighted, |_| true);
+        let mut a = shape.product(comm, &g, &weighted, |_| true);
         for i in 0..a.n() {
             for k in a.row_ptr[i]..a.row_ptr[i + 1] {
                 if a.col[k] as usize > i {
@@ -44,7 +51,8 @@ fn with_matrix(skew: f64, test: impl Fn(Result<Refined, Csr>, &Csr) + Send + Syn
                 }
             }
         }
-        test(Refined::weighted(&shape, a.clone(), &plain), &a);
+        let both = [a.clone(), transposed(&a)];
+        test(Refined::weighted(&shape, both, &plain), &a);
     });
 }
 

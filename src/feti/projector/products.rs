@@ -1,0 +1,159 @@
+//! Products AᵀB of rows between bodies, summed over the ranks: a rank gets the rows of the matrix that it has in the
+//! factor. Of few columns, and where ranks have copies of a factor, it gets all.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::pattern::Pattern;
+use super::rows::Rows;
+use super::shape::Shape;
+use crate::cholesky::team::Team;
+use crate::linalg::csr::Csr;
+use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
+
+/// Entries on their way to the ranks that have their rows.
+pub struct Outgoing<'a> {
+    team: &'a Team,
+    words: Vec<Vec<u64>>,
+}
+
+/// An entry that another rank has sent.
+#[derive(Debug, Clone, Copy)]
+pub struct Sent {
+    /// Its place in the pattern.
+    pub entry: usize,
+    /// The sender.
+    pub rank: usize,
+    /// Its value.
+    pub value: f64,
+}
+
+impl<'a> Outgoing<'a> {
+    /// Nothing yet.
+    pub fn new(team: &'a Team) -> Outgoing<'a> {
+        let words = vec![Vec::new(); team.comm().size() as usize];
+        Outgoing { team, words }
+    }
+
+    /// Adds an entry.
+    pub fn add(&mut self, row: u32, column: u32, value: f64) {
+        let to = self.team.place(row).rank as usize;
+        self.words[to].extend([u64::from(row) << 32 | u64::from(column), value.to_bits()]);
+    }
+
+    /// Sends them; returns what others have sent to this rank, by increasing rank. Collective.
+    pub fn send(self, pattern: &Pattern) -> Vec<Sent> {
+        let mut sent = Vec::new();
+        for (rank, words) in exchange_words(self.team.comm(), self.words)
+            .iter()
+            .enumerate()
+        {
+            sent.extend(words.chunks_exact(2).map(|pair| Sent {
+                entry: pattern.entry((pair[0] >> 32) as u32, pair[0] as u32),
+                rank,
+                value: f64::from_bits(pair[1]),
+            }));
+        }
+        sent
+    }
+}
+
+impl Shape {
+    /// The ranks that share factors, if all of them share one: a rank then has some rows of the matrix.
+    fn shared(&self, comm: &SimpleCommunicator) -> Option<&Team> {
+        let team = self.team().map(|team| &**team);
+        team.filter(|team| team.is_whole(comm))
+    }
+
+    /// AᵀB over the rows that `chosen` selects: the rows of the matrix that this rank has. Others are not to be read.
+    /// Collective.
+    pub fn product(
+        &self,
+        comm: &SimpleCommunicator,
+        a: &Rows,
+        b: &Rows,
+        chosen: impl Fn(usize) -> bool,
+    ) -> Csr {
+        let mut product = self.pattern.product_here(a, b, chosen);
+        let Some(team) = self.shared(comm) else {
+            sum_all(comm, &mut product.val);
+            return product;
+        };
+        let mut outgoing = Outgoing::new(team);
+        for (row, span) in self.pattern.entries().filter(|(row, _)| !team.has(*row)) {
+            for k in span.filter(|&k| product.val[k] != 0.0) {
+                outgoing.add(row, product.col[k], product.val[k]);
+            }
+        }
+        for sent in outgoing.send(&self.pattern) {
+            product.val[sent.entry] += sent.value;
+        }
+        product
+    }
+
+    /// AᵀB, which rounding makes unsymmetric, and its transpose, likewise. Collective.
+    pub fn product_and_transpose(&self, comm: &SimpleCommunicator, a: &Rows, b: &Rows) -> [Csr; 2] {
+        let Some(team) = self.shared(comm) else {
+            let product = self.product(comm, a, b, |_| true);
+            let transpose = transposed(&product);
+            return [product, transpose];
+        };
+        let mut product = self.pattern.product_here(a, b, |_| true);
+        let mut transpose = self.pattern.zeros();
+        let mut outgoing = [Outgoing::new(team), Outgoing::new(team)];
+        for (row, span) in self.pattern.entries() {
+            let own = team.has(row);
+            for k in span.filter(|&k| product.val[k] != 0.0) {
+                let (column, value) = (product.col[k], product.val[k]);
+                if !own {
+                    outgoing[0].add(row, column, value);
+                }
+                match team.has(column) {
+                    true => transpose.val[self.pattern.entry(column, row)] += value,
+                    false => outgoing[1].add(column, row, value),
+                }
+            }
+        }
+        for (outgoing, to) in outgoing.into_iter().zip([&mut product, &mut transpose]) {
+            for sent in outgoing.send(&self.pattern) {
+                to.val[sent.entry] += sent.value;
+            }
+        }
+        [product, transpose]
+    }
+
+    /// All rows of a matrix of which this rank has some. Collective.
+    pub fn gathered(&self, comm: &SimpleCommunicator, a: Csr) -> Csr {
+        let Some(team) = self.shared(comm) else {
+            return a;
+        };
+        let mut words: Vec<u64> = Vec::new();
+        for row in team.own_dofs() {
+            let (col, val) = a.row(row as usize);
+            for (&column, value) in col.iter().zip(val) {
+                words.extend([u64::from(row) << 32 | u64::from(column), value.to_bits()]);
+            }
+        }
+        let all = gather_all(comm, &words).concat();
+        let entry = |pair: &[u64]| {
+            (
+                (pair[0] >> 32) as u32,
+                pair[0] as u32,
+                f64::from_bits(pair[1]),
+            )
+        };
+        let triplets: Vec<(u32, u32, f64)> = all.chunks_exact(2).map(entry).collect();
+        Csr::from_triplets(a.n(), &triplets)
+    }
+}
+
+/// Aᵀ for a pattern that is symmetric.
+pub(super) fn transposed(a: &Csr) -> Csr {
+    let mut out = a.clone();
+    for i in 0..a.n() {
+        for k in a.row_ptr[i]..a.row_ptr[i + 1] {
+            out.val[k] = a.get(a.col[k] as usize, i);
+        }
+    }
+    out
+}
