@@ -159,8 +159,8 @@ impl Symbolic {
         }
     }
 
-    /// The same for blocks of dofs, all coupled: `blocks` has the pattern of the blocks and `dofs` their dofs, n in all.
-    /// Sets of blocks become fronts; blocks in no set have no dofs.
+    /// The same for blocks of dofs, all coupled: `blocks` has the pattern of the blocks and `dofs` their dofs, n in
+    /// all. Sets of blocks become fronts; blocks in no set have no dofs.
     pub fn with_blocks(
         blocks: &Csr,
         sets: &[Vec<u32>],

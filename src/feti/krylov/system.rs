@@ -3,8 +3,8 @@
 //! The projector P stands on both sides of both operators. Every Krylov method, flexible or pipelined, left or right
 //! preconditioned, therefore works in the space V = ker Gᵀ without knowing of it. P_2 is I if nothing is deflated.
 //!
-//! CG keeps its directions and residuals in V by itself, to the digits that P has. Where these are all, P stands only on
-//! the side where something enters V: A = Pᵀ F, and P M⁻¹.
+//! CG keeps its directions and residuals in V by itself, to the digits that P has. Where these are all, P stands only
+//! on the side where something enters V: A = Pᵀ F, and P M⁻¹.
 
 use std::cell::{Cell, Ref, RefCell, RefMut};
 

@@ -26,8 +26,8 @@ pub struct Pattern {
     col: Vec<u32>,
 }
 
-/// For each body those that it meets in rows of A and of B, which are distributed alike, and itself, increasing. `start`
-/// has the first column of each body. The same on every rank. Collective.
+/// For each body those that it meets in rows of A and of B, which are distributed alike, and itself, increasing.
+/// `start` has the first column of each body. The same on every rank. Collective.
 pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Vec<Vec<u32>> {
     let n = start.len() - 1;
     let body = body_of_columns(start);
