@@ -55,7 +55,8 @@ pub(crate) fn solve(
     let mut accuracy = 1.0;
     for _ in 0..rejudge::ROUNDS {
         let certified = method.certify(method.refine(found)?)?;
-        if !certified.status.converged() {
+        // A certificate that rows on the wrong side have spoilt is for the loop to mend.
+        if !certified.status.converged() && certified.status != Status::Certificate {
             return Ok((certified, steps));
         }
         let Some(mut state) = rejudge::again(method, &certified)? else {

@@ -8,7 +8,8 @@
 //!
 //! The variables are those of [`Augmented`], shifted by a λ̃ with Gᵀ λ̃ = e. SMALBE finds the rows that hold. Steps of
 //! the active-set loop then solve the equations on these rows to the tolerance of the user, and judge the result. If
-//! they change the set, SMALBE goes on with a tenth of its tolerance.
+//! they change the set, SMALBE goes on with a tenth of its tolerance. Where its own steps lead nowhere, the augmented
+//! Lagrangian of the rows (`lagrangian`) takes over.
 
 use std::time::Instant;
 
@@ -17,6 +18,7 @@ use mpi::topology::SimpleCommunicator;
 use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::judge;
+use super::lagrangian;
 use super::mprgp::{Bounded, Setting};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, Progress, State, Step};
@@ -43,6 +45,9 @@ const JUMPS: usize = 4;
 /// In a trial, a gap is violated only if it is above this many tolerances, relative to the largest displacement. Rows
 /// without force come and go by rounding.
 const OPEN: f64 = 0.1;
+/// Number of steps that change no row and do not halve the residual after which SMALBE gives up. Where bodies differ in
+/// stiffness by many orders μ would take thousands.
+const STALLED: usize = 20;
 /// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
 const CLOSING_STEPS: usize = 5;
 
@@ -66,6 +71,8 @@ pub(super) fn solve(
     // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
+    // The residual when the last row changed, or when it was halved, and the steps since then.
+    let (mut before, mut idle) = (f64::INFINITY, 0);
     loop {
         if state.steps >= settings.max_it {
             let run = ActiveSet::new(method, settings, Some(&state))?;
@@ -76,8 +83,17 @@ pub(super) fn solve(
             0 => unchanged + 1,
             _ => 0,
         };
+        match unchanged > 0 && step.residual > 0.5 * before {
+            true => idle += 1,
+            false => (before, idle) = (step.residual, 0),
+        }
         observe(&step, &state)?;
         steps.push(step);
+        if idle >= STALLED {
+            drop(search);
+            let seconds = clock.elapsed().as_secs_f64();
+            return lagrangian::solve(method, settings, state, steps, seconds, observe);
+        }
         // A set that stays is tried even if μ is still far from its limit. The ascent of μ is slow where stiff bodies
         // hang on soft ones.
         if !settled && unchanged != PATIENCE {
