@@ -103,7 +103,7 @@ fn run(session: &Session) -> Result<()> {
     let mut body = BodySpec::new("body", mesh.partitioned(part, most, interface));
     let components = if elastic { dim } else { 1 };
     body.load.fields = vec![Field::constant(1.0); components];
-    body.dirichlet = vec![[const { None }; 3]; 2];
+    body.dirichlet = vec![[const { None }; 3]; 2].into();
     for c in 0..components {
         body.dirichlet[0][c] = Some(Field::constant(0.0));
     }

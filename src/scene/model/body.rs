@@ -1,5 +1,6 @@
 //! A body as plain data: mesh, coefficients, loads and given values.
 
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
@@ -57,17 +58,38 @@ pub enum Force {
 }
 
 /// Given values by side of the mesh ([`Mesh::side_name`]) and component; `None`: the component is free there. Sides
-/// beyond the end of the list are free. A scalar problem uses the first component only.
-pub type Sides = Vec<[Option<Field>; 3]>;
+/// beyond the end of the list are free. A scalar problem uses the first component only. Copies share the list until one
+/// of them changes it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sides(Arc<Vec<[Option<Field>; 3]>>);
+
+impl From<Vec<[Option<Field>; 3]>> for Sides {
+    fn from(list: Vec<[Option<Field>; 3]>) -> Sides {
+        Sides(list.into())
+    }
+}
+
+impl Deref for Sides {
+    type Target = Vec<[Option<Field>; 3]>;
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl DerefMut for Sides {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        Arc::make_mut(&mut self.0)
+    }
+}
 
 /// No side of a box is held.
 pub fn free_all_round() -> Sides {
-    vec![[const { None }; 3]; SIDES.len()]
+    vec![[const { None }; 3]; SIDES.len()].into()
 }
 
 /// u = 0 on all sides of a box, in all components.
 pub fn held_all_round() -> Sides {
-    vec![held(); SIDES.len()]
+    vec![held(); SIDES.len()].into()
 }
 
 /// u = 0 on a side, in all components.

@@ -1,6 +1,8 @@
 //! A box that is cut into equal bodies.
 
-use super::body::{held_all_round, BodySpec, Load};
+use std::collections::HashMap;
+
+use super::body::{held_all_round, BodySpec, Load, Sides, SIDES};
 use crate::mesh::{places, BoxMesh};
 
 /// A box cut into `bodies[0]` × `bodies[1]` (× `bodies[2]`) equal bodies.
@@ -48,6 +50,8 @@ impl GridSpec {
             .grid()
             .expect("a grid of bodies is cut from a box");
         let BoxMesh { origin, size, .. } = *grid;
+        // Bodies at the same sides of the grid share their given values.
+        let mut known: HashMap<[bool; SIDES.len()], Sides> = HashMap::new();
         let body = |place: [usize; 3]| {
             let outer = |s: usize| place[s / 2] == [0, bodies[s / 2] - 1][s % 2];
             let mut body = whole.clone();
@@ -68,11 +72,14 @@ impl GridSpec {
             body.poisson = whole.poisson.over(*bodies);
             body.surface.retain(|load| outer(load.side));
             body.springs.retain(|(side, _)| outer(*side));
-            for (s, given) in body.dirichlet.iter_mut().enumerate() {
-                if !outer(s) {
-                    *given = [const { None }; 3];
-                }
-            }
+            let at = std::array::from_fn(outer);
+            let given = known.entry(at).or_insert_with(|| {
+                let mut given = whole.dirichlet.clone();
+                let inner = given.iter_mut().zip(at).filter(|(_, outer)| !outer);
+                inner.for_each(|(given, _)| *given = [const { None }; 3]);
+                given
+            });
+            body.dirichlet = given.clone();
             body
         };
         places(*bodies).map(body).collect()

@@ -184,7 +184,7 @@ impl OfGroups {
             body.springs = at_sides.collect();
         }
         if let Some(list) = &self.dirichlet {
-            body.dirichlet = vec![[const { None }; 3]; mesh.n_sides()];
+            body.dirichlet = vec![[const { None }; 3]; mesh.n_sides()].into();
             for (name, given) in list {
                 if let Some(side) = mesh.side_of_name(name) {
                     body.dirichlet[side] = given.clone();
@@ -274,7 +274,7 @@ impl Reader {
                 return item.error(format!("body `{name}`: {first} ({expected})"));
             }
             body.mesh = mesh.into();
-            body.dirichlet = vec![[const { None }; 3]; body.mesh.n_sides()];
+            body.dirichlet = vec![[const { None }; 3]; body.mesh.n_sides()].into();
             conditions.apply(&mut body);
             let Some(placements) = &placements else {
                 out.push(body);

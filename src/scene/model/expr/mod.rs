@@ -9,6 +9,7 @@ mod tokens;
 
 use gradient::{Real, WithGradient};
 use std::fmt;
+use std::sync::Arc;
 
 /// Names of the variables, in the order of [`Variables`].
 const VARIABLES: [&str; 9] = ["x", "y", "z", "bi", "bj", "bk", "si", "sj", "sk"];
@@ -24,9 +25,12 @@ pub struct Variables {
     pub subdomain: [usize; 3],
 }
 
-/// An expression in x, y, z, bi, bj, bk, si, sj, sk.
+/// An expression in x, y, z, bi, bj, bk, si, sj, sk. Copies share it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Expr {
+pub struct Expr(Arc<Written>);
+
+#[derive(Debug, PartialEq)]
+struct Written {
     text: String,
     root: Ast,
 }
@@ -89,18 +93,14 @@ impl Expr {
     /// The expression written as `text`, with other names (at most nine) for the variables.
     pub(crate) fn parse_in(text: &str, variables: &[&str]) -> Result<Expr, String> {
         let root = parse::parse(text, variables)?;
-        Ok(Expr {
-            text: text.to_string(),
-            root,
-        })
+        let text = text.to_string();
+        Ok(Expr(Arc::new(Written { text, root })))
     }
 
     /// The constant `value`.
     pub fn constant(value: f64) -> Expr {
-        Expr {
-            text: format!("{value}"),
-            root: Ast::Number(value),
-        }
+        let (text, root) = (format!("{value}"), Ast::Number(value));
+        Expr(Arc::new(Written { text, root }))
     }
 
     /// The value, if the expression contains no variable.
@@ -114,7 +114,7 @@ impl Expr {
                 Ast::If(c, a, b) => free(c) && free(a) && free(b),
             }
         }
-        free(&self.root).then(|| self.eval(&Variables::default()))
+        free(&self.0.root).then(|| self.eval(&Variables::default()))
     }
 
     /// Whether the expression contains x, y or z.
@@ -129,12 +129,12 @@ impl Expr {
                 Ast::If(c, a, b) => varies(c) || varies(a) || varies(b),
             }
         }
-        varies(&self.root)
+        varies(&self.0.root)
     }
 
     /// The value at `at`.
     pub fn eval(&self, at: &Variables) -> f64 {
-        if let Ast::Number(value) = self.root {
+        if let Ast::Number(value) = self.0.root {
             return value;
         }
         self.eval_on(at, |d| at.point[d])
@@ -159,13 +159,13 @@ impl Expr {
             variables[3 + d] = T::constant(at.body[d] as f64);
             variables[6 + d] = T::constant(at.subdomain[d] as f64);
         }
-        evaluate(&self.root, &variables)
+        evaluate(&self.0.root, &variables)
     }
 }
 
 impl fmt::Display for Expr {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(&self.text)
+        out.write_str(&self.0.text)
     }
 }
 
