@@ -95,7 +95,7 @@ fn options(rng: &mut Rng, out: &mut String) {
         "pc_type",
         &["lumped", "dirichlet", "coarse_corrected"],
     );
-    set(rng, 6, "operator", &["explicit", "implicit"]);
+    set(rng, 6, "operators", &["explicit", "implicit"]);
     set(rng, 8, "adaptive", &["10", "off"]);
     set(
         rng,
