@@ -15,9 +15,14 @@ use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
 use crate::feti::projector::gram::FEW;
 
-/// Projections in an iteration, each with an all-reduce of r numbers or, of many, with messages up and down the tree: P
-/// and Pᵀ around F and around M⁻¹.
-const PROJECTIONS: f64 = 4.0;
+/// Projections in an iteration: P and Pᵀ around F and around M⁻¹, each with an all-reduce of r numbers; or of many
+/// motions Pᵀ after F and P after M⁻¹, each with messages up and down the tree.
+fn projections(r: f64) -> f64 {
+    match r > FEW as f64 {
+        true => 2.0,
+        false => 4.0 * any(r),
+    }
+}
 
 /// Entries in a row of Gᵀ G: a body of a plane grid and its eight neighbours, scalar.
 const NEAR: f64 = 9.0;
@@ -148,7 +153,7 @@ impl Sent {
     /// The data that the rank with the largest amount sends in a run.
     pub fn of(point: &Point) -> Sent {
         let counted = &point.communication;
-        let projections = PROJECTIONS * any(point.work.kernels);
+        let projections = projections(point.work.kernels);
         Sent {
             messages: counted.messages.max,
             bytes: counted.bytes.max,
@@ -170,9 +175,12 @@ pub struct Model {
 /// per entry.
 const FILL: f64 = 93.0;
 
-/// Bytes that every rank has for each rigid motion, whoever factors it: pattern and entries of Gᵀ G, its order, the
-/// structure of the fronts, and who has what.
-const KNOWN: f64 = 12.0 * NEAR + 200.0;
+/// Bytes that every rank has for each rigid motion, whoever factors it: its order, the structure of the fronts, and who
+/// has what.
+const KNOWN: f64 = 200.0;
+
+/// Bytes of pattern and entries of Gᵀ G for each rigid motion in a rank's rows of the factor and of G.
+const ENTRIES: f64 = 3.0 * 12.0 * NEAR;
 
 /// The part of the operations of the factor on the way from a single body to the root.
 const WAY: f64 = 0.2;
@@ -214,7 +222,8 @@ impl Shares {
 
 /// Bytes of Gᵀ G and its factor on a rank.
 pub fn replicated(r: f64, ranks: f64) -> f64 {
-    KNOWN * r + FILL * Shares::new(r, ranks).rows * (r + 1.0).log2()
+    let rows = Shares::new(r, ranks).rows;
+    KNOWN * r + ENTRIES * rows + FILL * rows * (r + 1.0).log2()
 }
 
 /// The part of the data read by a rank in an iteration that does not fit in a cache of this size.
@@ -309,7 +318,8 @@ impl Model {
             * network.messages(2.0 * ranks.log2(), 8.0 * (NEAR + 1.0) * r);
         // A projection sums all columns, or goes up the tree and down again.
         let summed = if shared > 0.0 { 0.0 } else { r };
-        let answered = 2.0 * PROJECTIONS * network.messages(shares.messages, 16.0 * shares.way);
+        let (projections, way) = (projections(r), 16.0 * shares.way);
+        let answered = 2.0 * projections * network.messages(shares.messages, way);
         // A rank has the columns of its own part, of the factor and in its cache.
         let solved = Work {
             kernels: shares.rows,
@@ -324,7 +334,7 @@ impl Model {
             lifting,
             natural,
             exchange: copies + network.messages(sent.messages, sent.bytes) + answered,
-            reduction: sent.dots * network.all_reduce(ranks, 8.0) + PROJECTIONS * sum(summed),
+            reduction: sent.dots * network.all_reduce(ranks, 8.0) + projections * sum(summed),
         };
         Modelled {
             setup,
