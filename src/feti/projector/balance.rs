@@ -84,10 +84,9 @@ impl NaturalCoarse {
         for _ in 0..2 {
             let mut c = vec![0.0; self.r];
             self.g.add_transpose(&lambda.array()?, &mut c);
-            sum_all(comm, &mut c);
-            c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
-            let least = choose.then(|| self.least(solver, &c));
-            solver.solve(&mut c, Side::Plain)?;
+            c.iter_mut().for_each(|c| *c = -*c);
+            let least = choose.then(|| self.least(comm, solver, c.clone(), &load.e));
+            solver.solve_sum(comm, &mut c, Some(&load.e), Side::Plain)?;
             let mut lambda = lambda.array_mut()?;
             let mut forces = vec![0.0; lambda.len()];
             self.qg().add(1.0, &c, &mut forces);
@@ -105,25 +104,33 @@ impl NaturalCoarse {
         Ok(())
     }
 
-    /// G (Gᵀ G)⁺ c: the smallest forces that do this work on the motions of the bodies. Collective.
-    fn least(&self, solver: &Gtg, c: &[f64]) -> Vec<f64> {
-        let mut c = c.to_vec();
+    /// G (Gᵀ G)⁺ (e + Σ c), the sum over the ranks: the smallest forces that do this work on the motions of the bodies.
+    /// Collective.
+    fn least(
+        &self,
+        comm: &SimpleCommunicator,
+        solver: &Gtg,
+        mut c: Vec<f64>,
+        e: &[f64],
+    ) -> Vec<f64> {
+        sum_all(comm, &mut c);
+        c.iter_mut().zip(e).for_each(|(c, e)| *c += e);
         solver.gram.solve(&mut c);
         let mut forces = vec![0.0; self.g.n()];
         self.g.add(1.0, &c, &mut forces);
         forces
     }
 
-    /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.
+    /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ), in the columns of this
+    /// rank's bodies; other entries are not to be read. Collective.
     pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
         let mut c = vec![0.0; self.r];
         let qg = self.qg();
         qg.add_transpose(&jump.array()?, &mut c);
-        sum_all(comm, &mut c);
-        if let Some(gtg) = &self.gtg {
-            gtg.solve(&mut c, Side::Transposed)?;
-        }
         c.iter_mut().for_each(|v| *v = -*v);
+        if let Some(gtg) = &self.gtg {
+            gtg.solve_sum(comm, &mut c, None, Side::Transposed)?;
+        }
         Ok(c)
     }
 

@@ -177,6 +177,26 @@ impl Gtg {
         }
     }
 
+    /// c ← (Gᵀ Q G)⁻¹ (b + Σ c) (or with the transposed inverse), the sum over the ranks. A rank has the solution in
+    /// the columns of its own rows and bodies; other entries are not to be read. `b` is the same on every rank.
+    /// Collective.
+    pub fn solve_sum(
+        &self,
+        comm: &SimpleCommunicator,
+        c: &mut [f64],
+        b: Option<&[f64]>,
+        side: Side,
+    ) -> Result<()> {
+        if let (Some(factor), Some(spread)) = (self.shared(), &self.spread) {
+            return spread.solve(factor, c, b);
+        }
+        sum_all(comm, c);
+        if let Some(b) = b {
+            c.iter_mut().zip(b).for_each(|(c, b)| *c += b);
+        }
+        self.solve(c, side)
+    }
+
     /// x ← x − along (Gᵀ Q G)⁻¹ fromᵀ x (or with the transposed inverse). Collective.
     pub fn remove(
         &self,

@@ -265,7 +265,10 @@ impl NaturalCoarse {
         let suffices = |s: &Rc<Spread>| s.fits(team) && wide.is_none_or(|qg| s.covers(qg));
         if any(session.comm(), !known.as_ref().is_some_and(suffices)) {
             let all = std::iter::once(&self.all).chain(wide);
-            let columns = distinct(all.flat_map(|r| r.columns().iter().copied()));
+            let of_rows = all.flat_map(|r| r.columns().iter().copied());
+            let kernels = self.kernels.iter().zip(&self.first_column);
+            let of_bodies = kernels.flat_map(|(k, &first)| first as u32..(first + k.cols) as u32);
+            let columns = distinct(of_rows.chain(of_bodies));
             *known = Some(Spread::new(session, team, &columns)?.into());
         }
         Ok(known.clone())

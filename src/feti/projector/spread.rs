@@ -1,8 +1,8 @@
 //! A factor that ranks share, applied to vectors of columns that no rank has whole.
 //!
-//! A rank has entries for the columns in its own rows of G and QG. Most belong to fronts of its own or to those above
-//! them: what it has of the latter goes up the tree with what its fronts leave to them, and the solution comes back the
-//! same way. The rest goes to the rank that has the front.
+//! A rank has entries for the columns in its own rows of G and QG, and for those of its own bodies. Most belong to
+//! fronts of its own or to those above them: what it has of the latter goes up the tree with what its fronts leave to
+//! them, and the solution comes back the same way. The rest goes to the rank that has the front.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -77,13 +77,26 @@ impl Spread {
 
     /// x ← x − along A⁺ fromᵀ x for the matrix A of this factor. Collective.
     pub fn remove(&self, factor: &Gram, x: &PetscVec, from: &Rows, along: &Rows) -> Result<()> {
-        let (mut work, mut shares) = (self.work.borrow_mut(), self.shares.borrow_mut());
+        let mut work = self.work.borrow_mut();
         let columns = self.near.iter().map(|n| &n.0).chain(&self.far);
         columns.for_each(|&c| work[c as usize] = 0.0);
         from.add_transpose(&x.array()?, &mut work);
+        self.solve(factor, &mut work, None)?;
+        along.add(-1.0, &work, &mut x.array_mut()?);
+        Ok(())
+    }
+
+    /// c ← A⁺ (b + Σ c), the sum over the ranks, of which each has a share in its columns here, and gets the solution
+    /// there; `b` is the same on every rank. Collective.
+    pub fn solve(&self, factor: &Gram, work: &mut [f64], b: Option<&[f64]>) -> Result<()> {
+        let mut shares = self.shares.borrow_mut();
         shares.fill(0.0);
         for &(c, at) in &self.near {
             shares[at as usize] = work[c as usize];
+        }
+        if let Some(b) = b {
+            let own = self.team.own_dofs().zip(shares.iter_mut());
+            own.for_each(|(c, s)| *s += b[c as usize]);
         }
         let mut ghosts: Vec<f64> = self.far.iter().map(|&c| work[c as usize]).collect();
         if let Some(halo) = &self.halo {
@@ -104,7 +117,6 @@ impl Spread {
         far.for_each(|(&c, v)| work[c as usize] = *v);
         let near = self.near.iter();
         near.for_each(|&(c, at)| work[c as usize] = shares[at as usize]);
-        along.add(-1.0, &work, &mut x.array_mut()?);
         Ok(())
     }
 }
