@@ -182,14 +182,13 @@ impl Symbolic {
         let fronts = coarse.fronts.into_iter().map(|front| {
             let below = front.below.iter().map(|&p| p as usize);
             let below = below.flat_map(|p| first[p]..first[p + 1]);
-            let mut front = Front {
+            let front = Front {
                 start: first[front.start] as usize,
                 end: first[front.end] as usize,
                 below: below.collect(),
                 panel: storage,
                 ..front
             };
-            front.into_parent.clear();
             storage += panel::length(front.width(), front.size());
             front
         });

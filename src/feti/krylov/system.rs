@@ -220,9 +220,13 @@ impl System {
     pub(super) fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         self.heed()?;
         let dual = self.dual();
-        if dual.natural.r == 0 || self.stays() {
+        if dual.natural.r == 0 {
             dual.f(x, y)?;
             self.p2_transpose(y)?;
+            return self.keep(x, y);
+        }
+        if self.stays() {
+            dual.f(x, y)?;
             dual.p_transpose(y)?;
             return self.keep(x, y);
         }
