@@ -83,10 +83,20 @@ impl Entry for f64 {
     fn substitute<const N: usize>(group: &[f64], work: &mut [f64]) {
         let (square, below) = group.split_at(N * N);
         let (x, rest) = work.split_at_mut(N);
-        let below = &below[..N * rest.len()];
-        let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact(LOT));
+        let whole = rest.len() / LOT * LOT;
+        let (lots, l) = below[..N * rest.len()].split_at(N * whole);
+        let (rows, w) = rest.split_at(whole);
+        let r = w.len();
+        let mut last = [0.0; N];
+        for (i, w) in w.iter().enumerate() {
+            for (k, last) in last.iter_mut().enumerate() {
+                *last = l[k * r + i].mul_add(*w, *last);
+            }
+        }
+        // From the end to the start, as the groups come: memory is read in one direction.
         let mut sums = [[0.0; LOT]; N];
-        for (l, w) in (&mut lots).zip(&mut rows) {
+        let lots = lots.chunks_exact(N * LOT).rev();
+        for (l, w) in lots.zip(rows.chunks_exact(LOT).rev()) {
             let w = lot(w, 0);
             for (k, sum) in sums.iter_mut().enumerate() {
                 let l = lot(l, k);
@@ -95,13 +105,12 @@ impl Entry for f64 {
                 }
             }
         }
-        let (l, w) = (lots.remainder(), rows.remainder());
-        let r = w.len();
         let inverse = reciprocals::<N>(square);
         for k in (0..N).rev() {
-            let last: f64 = l[k * r..][..r].iter().zip(w).map(|(l, w)| l * w).sum();
+            let [a, b, c, d, e, f, g, h] = sums[k];
+            let sum = ((a + e) + (c + g)) + ((b + f) + (d + h));
             let inside: f64 = (k + 1..N).map(|i| square[k * N + i] * x[i]).sum();
-            x[k] = (x[k] - (sums[k].iter().sum::<f64>() + last) - inside) * inverse[k];
+            x[k] = (x[k] - (sum + last[k]) - inside) * inverse[k];
         }
     }
 }

@@ -13,6 +13,9 @@ impl Jump {
     pub fn implied(&self) -> Vec<bool> {
         let mut out = self.active.clone();
         for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
+            if !block.rows.clone().any(|r| self.inequality[r] && !out[r]) {
+                continue;
+            }
             let (active, c) = (
                 &self.active[block.rows.clone()],
                 &self.gap[block.rows.clone()],

@@ -131,13 +131,17 @@ impl System {
     /// Marks an iteration as running while the guard lives. `start` is the λ that it corrects, if monitors may ask for
     /// it; `cg` says that the method is CG.
     pub(crate) fn run(&self, start: Option<&PetscVec>, cg: bool) -> RunningGuard<'_> {
-        let plain = self.deflation.borrow().is_none();
         let running = Running {
             start: start.cloned(),
-            stays: cg && plain && self.dual().natural.is_exact(),
+            stays: cg && self.keeps_to_v(),
         };
         self.running.replace(Some(running));
         RunningGuard(self)
+    }
+
+    /// Whether a projection leaves nothing outside V but rounding, and nothing is deflated.
+    pub(crate) fn keeps_to_v(&self) -> bool {
+        self.deflation.borrow().is_none() && self.dual().natural.is_exact()
     }
 
     /// Whether an operator is applied to what is in V already.
