@@ -11,6 +11,7 @@
 //! | [`dissection`], [`cover`] | order of elimination: nested dissection with the smallest separators |
 //! | [`symbolic`] | fronts, their rows, and where these stand in the parent's front |
 //! | [`multifrontal`] | factors front by front; what reaches the root is S |
+//! | `front` | factors one front, with or without pivots that vanish |
 //! | [`panel`] | how the columns of a front lie in memory |
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
@@ -23,6 +24,7 @@
 pub mod cover;
 mod deal;
 pub mod dissection;
+mod front;
 pub mod interior;
 pub mod lanes;
 pub mod multifrontal;

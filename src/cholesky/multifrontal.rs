@@ -13,10 +13,11 @@
 
 use std::sync::Arc;
 
+use super::front::{factor_front, factor_semidefinite};
 use super::panel;
 use super::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
-use crate::linalg::dense::{self, Dense, Scratch};
+use crate::linalg::dense::{Dense, Scratch};
 
 /// A pivot below this fraction of the diagonal entry it came from counts as zero. Rounding leaves about 1e-16 times the
 /// number of updates; a body held by a spring of 1e-8 of its stiffness has pivots of 1e-8.
@@ -111,9 +112,6 @@ pub(super) enum Pivots<'a> {
     /// Those below this fraction of the diagonal entry are replaced; the list takes their dofs.
     Above(f64, &'a mut Vec<u32>),
 }
-
-/// Added to the diagonal entry of a dof that is left out. Its root divides what other dofs have in common with it.
-const OUT: f64 = 1e300;
 
 /// Returns S and the panels of the fronts in `kept`.
 fn factor(
@@ -298,117 +296,6 @@ fn add_lower(s: &mut Dense, map: &[u32], update: &[f64]) {
             column[i as usize] += v;
         }
     }
-}
-
-/// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j is below
-/// `least`, relative to its diagonal entry.
-fn factor_front(
-    panel: &mut Dense,
-    update: &mut Dense,
-    diagonal: &[f64],
-    least: f64,
-    scratch: &mut Scratch,
-) -> Result<(), usize> {
-    let width = panel.cols;
-    let (mut pivot, mut below) = panel.view_mut().split_at_row_mut(width);
-    let failed = dense::cholesky(pivot.as_mut(), scratch).err();
-    let done = failed.map_or(width, |e| e.index);
-    for (j, &d) in diagonal.iter().enumerate().take(done) {
-        let l = pivot[(j, j)];
-        if l * l <= least * d || l.is_nan() {
-            return Err(j);
-        }
-    }
-    if done < width {
-        return Err(done);
-    }
-    dense::solve_right_transpose(pivot.as_ref(), below.as_mut());
-    dense::rank_k_update(update.view_mut(), -1.0, below.as_ref());
-    Ok(())
-}
-
-/// The same, but replaces pivots below `least`. Returns their columns, increasing.
-fn factor_semidefinite(
-    panel: &mut Dense,
-    update: &mut Dense,
-    diagonal: &[f64],
-    least: f64,
-    scratch: &mut Scratch,
-) -> Vec<usize> {
-    // Most fronts have no such pivot. Large products take half the time of those of a group.
-    let width = panel.cols;
-    let square = Dense::from_fn(width, width, |i, j| panel.get(i, j));
-    if factor_front(panel, update, diagonal, least, scratch).is_ok() {
-        return Vec::new();
-    }
-    for j in 0..width {
-        panel.col_mut(j)[..width].copy_from_slice(square.col(j));
-    }
-    factor_by_groups(panel, update, diagonal, least, scratch)
-}
-
-/// Number of columns that are factored together where pivots vanish.
-const TOGETHER: usize = 48;
-
-/// [`factor_semidefinite`] of a front in which pivots vanish.
-fn factor_by_groups(
-    panel: &mut Dense,
-    update: &mut Dense,
-    diagonal: &[f64],
-    least: f64,
-    scratch: &mut Scratch,
-) -> Vec<usize> {
-    let (width, size) = (panel.cols, panel.rows);
-    let mut weak = Vec::new();
-    for start in (0..width).step_by(TOGETHER) {
-        let end = (start + TOGETHER).min(width);
-        // The columns of the group, from its first row down.
-        let mut group = Dense::from_fn(size - start, end - start, |i, j| match i < j {
-            true => 0.0,
-            false => panel.get(start + i, start + j),
-        });
-        let begin = group.clone();
-        let mut held: Vec<usize> = Vec::new();
-        let mut none = Dense::zeros(0, 0);
-        loop {
-            let mut square = Dense::from_fn(end - start, end - start, |i, j| group.get(i, j));
-            let own = &diagonal[start..end];
-            match factor_front(&mut square, &mut none, own, least, scratch) {
-                Ok(()) => {
-                    (0..end - start).for_each(|j| {
-                        group.col_mut(j)[..end - start].copy_from_slice(square.col(j));
-                    });
-                    break;
-                }
-                Err(j) => {
-                    held.push(j);
-                    group.clone_from(&begin);
-                    held.iter().for_each(|&j| group.set(j, j, OUT));
-                }
-            }
-        }
-        held.sort_unstable();
-        weak.extend(held.into_iter().map(|j| start + j));
-        let (square, mut below) = group.view_mut().split_at_row_mut(end - start);
-        dense::solve_right_transpose(square.as_ref(), below.as_mut());
-        for j in start..end {
-            panel.col_mut(j)[start..].copy_from_slice(group.col(j - start));
-        }
-        let below = group.view().subrows(end - start, size - end);
-        if end < width {
-            let across = below.subrows(0, width - end).transpose();
-            let rest = panel
-                .view_mut()
-                .submatrix_mut(end, end, size - end, width - end);
-            let (square, rest) = rest.split_at_row_mut(width - end);
-            dense::rank_k_update(square, -1.0, across.transpose());
-            let below = below.subrows(width - end, size - width);
-            dense::multiply(rest, true, -1.0, below, across);
-        }
-        let far = below.subrows(width - end, size - width);
-        dense::rank_k_update(update.view_mut(), -1.0, far);
-    }
-    weak
 }
 
 #[cfg(test)]
