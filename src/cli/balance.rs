@@ -1,8 +1,9 @@
 //! Equilibrium of every body: loads, forces on interfaces and obstacles, and reactions. In elasticity it is by
 //! components, and with moments.
 
+use crate::linalg::sorted::distinct;
 use crate::linalg::vec3::{cross, minus, norm};
-use crate::parallel::exchange::sum_all;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::json::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
@@ -13,7 +14,11 @@ use crate::{FetiFeti, Result};
 /// Σ |multiplier|, and those of the moments of the forces on rows and of the load.
 type Sums = [[f64; 3]; 4];
 
-/// Loads, forces of contact and reactions of every body; `rows` are all rows on rank 0. Collective.
+/// Numbers in [`Sums`].
+const SUMS: usize = 12;
+
+/// Loads, forces of contact and reactions of every body on rank 0, which has all `rows`; none on the others.
+/// Collective.
 pub(super) fn bodies(
     session: &Session,
     scene: &Scene,
@@ -48,7 +53,25 @@ pub(super) fn bodies(
             sizes[1] += norm(moment);
         }
     }
-    sum_all(session.comm(), sums.as_flattened_mut().as_flattened_mut());
+    // Rank 0 adds up what the others have of the bodies with a subdomain there.
+    let mut outgoing = vec![Vec::new(); session.size()];
+    let own = distinct(solver.problem().local.iter().map(|sub| sub.body));
+    if session.rank() > 0 {
+        for body in own {
+            outgoing[0].push(body as u64);
+            outgoing[0].extend(sums[body].as_flattened().iter().map(|v| v.to_bits()));
+        }
+    }
+    for words in exchange_words(session.comm(), outgoing) {
+        for words in words.chunks_exact(1 + SUMS) {
+            let to = sums[words[0] as usize].as_flattened_mut().iter_mut();
+            to.zip(&words[1..])
+                .for_each(|(sum, w)| *sum += f64::from_bits(*w));
+        }
+    }
+    if session.rank() > 0 {
+        return Ok(Vec::new());
+    }
     let floating = &solver.dual().stiffness.space.defect;
     let axial = scene.form.is_axial();
     let each = scene.bodies.iter().zip(&sums).zip(floating);

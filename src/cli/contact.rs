@@ -7,8 +7,8 @@ use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep, Slid};
 use crate::report::plots::profile::Profile;
-use crate::scene::sliding::{Sliders, Sliding};
-use crate::scene::{Displaced, Scene, Shape};
+use crate::scene::sliding::Sliding;
+use crate::scene::{Scene, Shape};
 use crate::substructures::{RowSource, SolvedRow};
 use crate::Solution;
 
@@ -49,14 +49,11 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     format!("{}|{}", body(a), body(b))
 }
 
-/// Forces per interface and obstacle; with the displacements since the pairing was made, and
-/// their load step, the sliding too.
-pub fn forces(
-    scene: &Scene,
-    rows: &[SolvedRow],
-    moved: Option<(&Displaced, usize)>,
-) -> Vec<InterfaceForce> {
-    let sliders = moved.map(|(_, step)| Sliders::new(scene, step));
+/// Sliding by interface and obstacle; those that do not touch do not slide.
+pub type Slides = BTreeMap<RowSource, Sliding>;
+
+/// Forces per interface and obstacle, and the sliding where it is known.
+pub fn forces(scene: &Scene, rows: &[SolvedRow], slides: Option<&Slides>) -> Vec<InterfaceForce> {
     by_source(rows)
         .map(|rows| {
             let some = rows.iter().any(|r| r.is_inequality());
@@ -64,8 +61,8 @@ pub fn forces(
             let least = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::INFINITY, f64::min);
             let most =
                 |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
-            let slid = moved.zip(sliders.as_ref()).filter(|_| some);
-            let slid = slid.map(|((u, _), sliders)| sliders.of(rows, u));
+            let slid = slides.filter(|_| some);
+            let slid = slid.map(|all| all.get(&rows[0].label.source).copied().unwrap_or_default());
             InterfaceForce {
                 name: name(scene, rows[0].label.source),
                 kind: match (rows[0].label.source, some, all) {
@@ -91,16 +88,6 @@ pub fn forces(
             }
         })
         .collect()
-}
-
-/// The largest sliding of all interfaces and obstacles; `rows` are all rows on rank 0.
-pub fn sliding(scene: &Scene, rows: &[SolvedRow], moved: &Displaced, step: usize) -> Sliding {
-    if rows.is_empty() {
-        return Sliding::default();
-    }
-    let sliders = Sliders::new(scene, step);
-    let each = with_inequalities(rows).map(|rows| sliders.of(rows, moved));
-    each.fold(Sliding::default(), Sliding::max)
 }
 
 /// The form of a sliding in reports.

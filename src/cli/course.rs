@@ -17,6 +17,7 @@ use crate::report::json::certified::Certified;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
+use crate::scene::sliding::{self, Sliding};
 use crate::scene::{distribution, Displaced, Scene, Stepping};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
@@ -41,8 +42,8 @@ pub(super) struct Course {
     pub rows: Vec<SolvedRow>,
     /// The scene with the contacts of this solution, where load steps renew them.
     pub scene: Option<Scene>,
-    /// In elasticity with contact, the displacements of the sides that may touch, since the pairing was made.
-    pub moved: Option<Displaced>,
+    /// In elasticity with contact, how far the sides that touch have slid since the pairing was made.
+    pub slides: Option<contact::Slides>,
     /// The fields of this solution, where load steps are written.
     pub fields: Option<Gathered>,
 }
@@ -135,12 +136,21 @@ pub(super) fn follow(
         let given = total(session.comm(), given);
         let rows = contact::rows(session, &solution);
         let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
-        let moved = (slides || scene.is_renewed()).then(|| {
-            let local = &solver.problem().local;
-            Displaced::gather(session, scene, local, &solution.u, step)
-        });
-        let moved = moved.map(|u| renewed.since(u));
+        let (local, u, own) = (&solver.problem().local, &solution.u, solution.rows());
+        let moved = match (scene.is_renewed(), slides) {
+            (true, _) => {
+                let all = Displaced::gather(session, scene, local, u, step);
+                Some(renewed.since(all))
+            }
+            (false, true) => {
+                let bodies = sliding::bodies_of(own);
+                Some(Displaced::near(session, scene, local, u, step, &bodies))
+            }
+            (false, false) => None,
+        };
         let scene = renewed.scene();
+        let slides = moved.filter(|_| slides);
+        let slides = slides.map(|u| sliding::slid(session, scene, own, &u, step));
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let certified = early.record(session, scene, &solution, step);
@@ -159,7 +169,7 @@ pub(super) fn follow(
             recover_seconds: seconds[1],
             solution,
             rows,
-            moved,
+            slides,
             scene: None,
             fields: None,
         };
@@ -168,7 +178,7 @@ pub(super) fn follow(
             now.load_steps.push(LoadStep {
                 setup_seconds,
                 factored,
-                ..load_step_record(scene, times[step], &now)
+                ..load_step_record(times[step], &now)
             });
         }
         if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
@@ -235,10 +245,10 @@ fn step_name(step: usize) -> String {
 }
 
 /// The record of a load step; forces are known on rank 0.
-fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
+fn load_step_record(t: f64, course: &Course) -> LoadStep {
     let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
-    let moved = course.moved.as_ref();
-    let slid = moved.map(|u| contact::sliding(scene, &course.rows, u, course.step));
+    let all = course.slides.as_ref().map(|all| all.values().copied());
+    let slid = all.map(|all| all.fold(Sliding::default(), Sliding::max));
     LoadStep {
         t,
         outer_iterations: course.iterations.len(),

@@ -248,11 +248,7 @@ fn contact_report(
         factorisations: counts[0] as usize,
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
-        interfaces: contact::forces(
-            scene,
-            &course.rows,
-            course.moved.as_ref().map(|u| (u, course.step)),
-        ),
+        interfaces: contact::forces(scene, &course.rows, course.slides.as_ref()),
         bodies: balance::bodies(session, scene, solver, &course.rows, course.step)?,
         load_steps: course.load_steps.clone(),
         updated: scene.is_renewed(),

@@ -1,4 +1,4 @@
-//! Displacements of the sides that may touch, known to every rank.
+//! Displacements of the sides that may touch, of all bodies or of those that a rank needs.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::checked::Scene;
-use crate::parallel::exchange::gather_all;
+use crate::parallel::exchange::{exchange_words, gather_all};
 use crate::petsc::Session;
 use crate::substructures::{BodyNode, RowSource, Subdomain};
 
@@ -20,8 +20,36 @@ pub struct Displaced {
 /// Words per node: body, node, three components.
 const WORDS: usize = 5;
 
+/// Adds the words of those of `nodes` that a subdomain has and is the owner of.
+fn nodes_of(
+    scene: &Scene,
+    sub: &Subdomain,
+    u: &[f64],
+    scale: f64,
+    nodes: &BTreeSet<usize>,
+    words: &mut Vec<u64>,
+) {
+    let (body, inside) = scene.place(sub.index);
+    let c = body.components;
+    let mut free = u.iter();
+    for node in body.mesh().subdomain_nodes(inside) {
+        let mut at = [0.0; 3];
+        for (component, value) in at[..c].iter_mut().enumerate() {
+            *value = match body.prescribed_at(node * c + component) {
+                Some(given) => given * scale,
+                None => *free.next().expect("a value for every free dof"),
+            };
+        }
+        if nodes.contains(&node) && body.mesh().owner(node) == inside {
+            words.extend([sub.body as u64, node as u64]);
+            words.extend(at.map(f64::to_bits));
+        }
+    }
+}
+
 impl Displaced {
-    /// Gathers them from the displacements `u` of each rank's subdomains at load step `step`. Collective.
+    /// All of them, on every rank, from the displacements `u` of each rank's subdomains at load step `step`.
+    /// Collective.
     ///
     /// # Panics
     /// For a step that the scene does not have.
@@ -33,30 +61,61 @@ impl Displaced {
         step: usize,
     ) -> Displaced {
         let scale = scene.prescribed_factor(step);
-        let wanted = scene.nodes_that_may_touch();
+        let wanted = scene.nodes_that_may_touch(|_| true);
         let mut words = Vec::new();
         for (sub, u) in local.iter().zip(u) {
-            let Some(wanted) = wanted.get(&sub.body) else {
-                continue;
-            };
-            let (body, inside) = scene.place(sub.index);
-            let c = body.components;
-            let mut free = u.iter();
-            for node in body.mesh().subdomain_nodes(inside) {
-                let mut at = [0.0; 3];
-                for (component, value) in at[..c].iter_mut().enumerate() {
-                    *value = match body.prescribed_at(node * c + component) {
-                        Some(given) => given * scale,
-                        None => *free.next().expect("a value for every free dof"),
-                    };
-                }
-                if wanted.contains(&node) && body.mesh().owner(node) == inside {
-                    words.extend([sub.body as u64, node as u64]);
-                    words.extend(at.map(f64::to_bits));
-                }
+            if let Some(nodes) = wanted.get(&sub.body) {
+                nodes_of(scene, sub, u, scale, nodes, &mut words);
             }
         }
-        let received = gather_all(session.comm(), &words);
+        Displaced::read(&gather_all(session.comm(), &words))
+    }
+
+    /// Those of some bodies, which need not be the same on all ranks. Collective.
+    ///
+    /// # Panics
+    /// As [`gather`](Self::gather).
+    pub fn near(
+        session: &Session,
+        scene: &Scene,
+        local: &[Subdomain],
+        u: &[Vec<f64>],
+        step: usize,
+        bodies: &BTreeSet<usize>,
+    ) -> Displaced {
+        let comm = session.comm();
+        let scale = scene.prescribed_factor(step);
+        let mut parts: FxHashMap<usize, usize> = FxHashMap::default();
+        local
+            .iter()
+            .for_each(|sub| *parts.entry(sub.body).or_default() += 1);
+        let is_whole = |b: usize| parts.get(&b) == Some(&scene.bodies[b].mesh().n_subdomains());
+        let ask = bodies.iter().filter(|&&b| !is_whole(b));
+        let ask: Vec<u64> = ask.map(|&b| b as u64).collect();
+        // Who wants a body, by body: this rank, and others.
+        let mut askers: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
+        for &body in bodies {
+            askers.entry(body).or_default().push(session.rank());
+        }
+        for (rank, list) in gather_all(comm, &ask).into_iter().enumerate() {
+            for body in list.into_iter().filter(|_| rank != session.rank()) {
+                askers.entry(body as usize).or_default().push(rank);
+            }
+        }
+        let wanted = scene.nodes_that_may_touch(|b| askers.contains_key(&b));
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (sub, u) in local.iter().zip(u) {
+            let (Some(nodes), Some(ranks)) = (wanted.get(&sub.body), askers.get(&sub.body)) else {
+                continue;
+            };
+            let mut words = Vec::new();
+            nodes_of(scene, sub, u, scale, nodes, &mut words);
+            ranks.iter().for_each(|&r| outgoing[r].extend(&words));
+        }
+        Displaced::read(&exchange_words(comm, outgoing))
+    }
+
+    fn read(received: &[Vec<u64>]) -> Displaced {
         let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
         let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
         for w in each {
@@ -118,38 +177,43 @@ impl Displaced {
 }
 
 impl Scene {
-    /// The sides that may touch, as (body, side).
-    pub(crate) fn sides_that_may_touch(&self) -> BTreeSet<(usize, usize)> {
+    /// The sides that may touch of some bodies, as (body, side).
+    pub(crate) fn sides_that_may_touch(
+        &self,
+        of: impl Fn(usize) -> bool,
+    ) -> BTreeSet<(usize, usize)> {
         let mut out = BTreeSet::new();
         for (k, interface) in self.interfaces.iter().enumerate() {
-            if interface.has_contact() {
-                let source = RowSource::Interface(k);
-                let sides = interface
-                    .bodies
-                    .map(|b| Some((b, self.side_of(source, b)?)));
-                out.extend(sides.into_iter().flatten());
+            let bodies = interface.bodies.into_iter().filter(|&b| of(b));
+            for body in bodies.filter(|_| interface.has_contact()) {
+                let side = self.side_of(RowSource::Interface(k), body);
+                out.extend(side.map(|side| (body, side)));
             }
         }
-        out.extend(self.obstacles.iter().map(|o| (o.body, o.side)));
+        let obstacles = self.obstacles.iter().filter(|o| of(o.body));
+        out.extend(obstacles.map(|o| (o.body, o.side)));
         out
     }
 
-    /// The nodes that may touch, by body.
-    fn nodes_that_may_touch(&self) -> FxHashMap<usize, BTreeSet<usize>> {
+    /// The nodes that may touch of some bodies, by body.
+    fn nodes_that_may_touch(
+        &self,
+        of: impl Fn(usize) -> bool,
+    ) -> FxHashMap<usize, BTreeSet<usize>> {
         let mut out: FxHashMap<usize, BTreeSet<usize>> = FxHashMap::default();
         if self.is_renewed() {
             // Any of their sides may come to touch.
-            let all = self.bodies.iter().enumerate();
+            let all = self.bodies.iter().enumerate().filter(|(b, _)| of(*b));
             return all
                 .map(|(b, body)| (b, body.mesh().boundary().into_iter().collect()))
                 .collect();
         }
-        for (body, side) in self.sides_that_may_touch() {
+        for (body, side) in self.sides_that_may_touch(&of) {
             let nodes = self.bodies[body].mesh().side_nodes(side);
             out.entry(body).or_default().extend(nodes);
         }
         for interface in self.interfaces.iter().filter(|i| i.has_contact()) {
-            for (k, &body) in interface.bodies.iter().enumerate() {
+            for (k, &body) in interface.bodies.iter().enumerate().filter(|(_, b)| of(**b)) {
                 let nodes = interface.shared.iter().map(|s| s.nodes[k]);
                 out.entry(body).or_default().extend(nodes);
             }

@@ -1,6 +1,8 @@
 //! How far the sides of a contact slide along each other, against the size of their faces, and how far faces turn:
 //! both are small where the geometry of the undeformed bodies may stand for that of the deformed ones.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::checked::Scene;
@@ -10,6 +12,8 @@ use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 use crate::mortar::across;
+use crate::parallel::exchange::{gather_all, Record};
+use crate::petsc::Session;
 use crate::substructures::{BodyNode, RowSource, SolvedRow};
 
 /// The motion of two sides along each other, at nodes that touch.
@@ -34,10 +38,60 @@ impl Sliding {
     }
 }
 
-/// The search for the sliding of the contacts of a scene. It keeps what does not change with the displacements.
-pub(crate) struct Sliders<'a> {
+/// The sliding of the interfaces and obstacles that touch at load step `step`, on every rank, from the rows that this
+/// rank has. `u` has the displacements since the pairing was made, of the bodies of these rows. Collective.
+///
+/// # Panics
+/// For a step that the scene does not have.
+pub(crate) fn slid(
+    session: &Session,
+    scene: &Scene,
+    rows: &[SolvedRow],
+    u: &Displaced,
+    step: usize,
+) -> BTreeMap<RowSource, Sliding> {
+    let touching = rows.iter().filter(|r| r.is_inequality() && r.holds());
+    let mut rows: Vec<SolvedRow> = touching.copied().collect();
+    rows.sort_by_key(|r| r.label.source);
+    let sliders = Sliders::new(scene, step, &bodies_of(&rows));
+    let mut words = Vec::new();
+    for rows in rows.chunk_by(|a, b| a.label.source == b.label.source) {
+        let source = rows[0].label.source;
+        let Sliding {
+            largest,
+            over_face,
+            turned,
+        } = sliders.of(rows, u);
+        source.pack(&mut words);
+        words.extend([largest, over_face, turned].map(f64::to_bits));
+    }
+    let mut all: BTreeMap<RowSource, Sliding> = BTreeMap::new();
+    for words in gather_all(session.comm(), &words) {
+        for words in words.chunks_exact(RowSource::WORDS + 3) {
+            let (source, values) = words.split_at(RowSource::WORDS);
+            let [largest, over_face, turned] = [0, 1, 2].map(|k| f64::from_bits(values[k]));
+            let more = Sliding {
+                largest,
+                over_face,
+                turned,
+            };
+            let at = all.entry(RowSource::unpack(source)).or_default();
+            *at = at.max(more);
+        }
+    }
+    all
+}
+
+/// The bodies with a node in these rows.
+pub(crate) fn bodies_of(rows: &[SolvedRow]) -> BTreeSet<usize> {
+    let members = rows.iter().flat_map(|r| r.label.members);
+    members.flatten().map(|node| node.body).collect()
+}
+
+/// The search for the sliding of the contacts of some bodies. It keeps what does not change with the displacements.
+struct Sliders<'a> {
     scene: &'a Scene,
-    /// The faces of every side that may touch, by their corners in order.
+    /// The faces of every side of the bodies that may touch, by their corners in order.
     faces: FxHashMap<(usize, usize), Vec<Vec<usize>>>,
     /// The size of the faces at every node of these sides.
     sizes: FxHashMap<BodyNode, f64>,
@@ -60,11 +114,7 @@ impl Scene {
 }
 
 impl<'a> Sliders<'a> {
-    /// The search at load step `step`.
-    ///
-    /// # Panics
-    /// For a step that the scene does not have.
-    pub fn new(scene: &'a Scene, step: usize) -> Sliders<'a> {
+    fn new(scene: &'a Scene, step: usize, bodies: &BTreeSet<usize>) -> Sliders<'a> {
         let motion = |o: &Obstacle| {
             let way = scene.way_of(o, step);
             // Where contacts are renewed, displacements are those since the last step.
@@ -74,7 +124,7 @@ impl<'a> Sliders<'a> {
             }
         };
         let (mut faces, mut sizes) = (FxHashMap::default(), FxHashMap::default());
-        for (body, side) in scene.sides_that_may_touch() {
+        for (body, side) in scene.sides_that_may_touch(|b| bodies.contains(&b)) {
             let spec = &scene.bodies[body].spec;
             let mut outlines = Vec::new();
             for face in spec.faces(side) {
@@ -100,14 +150,14 @@ impl<'a> Sliders<'a> {
         }
     }
 
-    /// The motion since the displacements were zero, of rows that come from one interface or obstacle.
-    pub fn of(&self, rows: &[SolvedRow], u: &Displaced) -> Sliding {
+    /// The motion since the displacements were zero, of rows that touch and come from one interface or obstacle.
+    fn of(&self, rows: &[SolvedRow], u: &Displaced) -> Sliding {
         let mut out = Sliding::default();
         let mut touching: FxHashSet<BodyNode> = FxHashSet::default();
         let Some(source) = rows.first().map(|r| r.label.source) else {
             return out;
         };
-        for row in rows.iter().filter(|r| r.is_inequality() && r.holds()) {
+        for row in rows {
             let members = row.label.members;
             let n = row.normal();
             let apart = self.apart(source, members, u);

@@ -187,18 +187,36 @@ impl SolvedRow {
     }
 }
 
+impl Record for RowSource {
+    const WORDS: usize = 2;
+
+    fn pack(&self, out: &mut Vec<u64>) {
+        let (kind, number) = match *self {
+            RowSource::Interface(k) => (0, k),
+            RowSource::Obstacle(k) => (1, k),
+            RowSource::Equation(k) => (2, k),
+        };
+        out.extend([kind, number as u64]);
+    }
+
+    fn unpack(w: &[u64]) -> RowSource {
+        let number = w[1] as usize;
+        match w[0] {
+            0 => RowSource::Interface(number),
+            2 => RowSource::Equation(number),
+            _ => RowSource::Obstacle(number),
+        }
+    }
+}
+
 impl Record for SolvedRow {
     const WORDS: usize = 19;
 
     fn pack(&self, out: &mut Vec<u64>) {
         let label = &self.label;
-        let (source, number) = match label.source {
-            RowSource::Interface(k) => (0, k),
-            RowSource::Obstacle(k) => (1, k),
-            RowSource::Equation(k) => (2, k),
-        };
         let flags = u64::from(self.is_inequality()) | u64::from(self.holds()) << 1;
-        out.extend([source, number as u64, flags, self.block]);
+        label.source.pack(out);
+        out.extend([flags, self.block]);
         for member in label.members {
             let [body, node] = member.map_or([usize::MAX; 2], |m| [m.body, m.node]);
             out.extend([body as u64, node as u64]);
@@ -224,11 +242,7 @@ impl Record for SolvedRow {
         };
         SolvedRow {
             label: RowLabel {
-                source: match w[0] {
-                    0 => RowSource::Interface(w[1] as usize),
-                    2 => RowSource::Equation(w[1] as usize),
-                    _ => RowSource::Obstacle(w[1] as usize),
-                },
+                source: RowSource::unpack(w),
                 members: [member(4), member(6)],
                 point: [8, 9, 10].map(value),
                 normal: [11, 12, 13].map(value),

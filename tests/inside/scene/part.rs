@@ -106,7 +106,7 @@ fn parts_have_the_rows_of_the_whole() {
                     };
                     assert_eq!(given(&part), given(&whole), "{file}");
                     assert_eq!(part.notes, whole.notes);
-                    let contact = |s: &Scene| s.sides_that_may_touch();
+                    let contact = |s: &Scene| s.sides_that_may_touch(|_| true);
                     assert_eq!(contact(&part), contact(&whole), "{file}");
                     rows += part.rows(&owns).len();
                     // Rows that lead from point to point need all points.
