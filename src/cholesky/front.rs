@@ -42,12 +42,13 @@ pub(super) fn factor_semidefinite(
 ) -> Vec<usize> {
     // Most fronts have no such pivot. Large products take half the time of those of a group.
     let width = panel.cols;
-    let square = Dense::from_fn(width, width, |i, j| panel.get(i, j));
+    let mut square = Vec::with_capacity(width * width);
+    (0..width).for_each(|j| square.extend_from_slice(&panel.col(j)[..width]));
     if factor_front(panel, update, diagonal, least, scratch).is_ok() {
         return Vec::new();
     }
-    for j in 0..width {
-        panel.col_mut(j)[..width].copy_from_slice(square.col(j));
+    for (j, column) in square.chunks_exact(width).enumerate() {
+        panel.col_mut(j)[..width].copy_from_slice(column);
     }
     factor_by_groups(panel, update, diagonal, least, scratch)
 }

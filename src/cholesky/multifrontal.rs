@@ -270,21 +270,51 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
 fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], child: &[f64]) {
     let n = map.len();
     let width = panel.cols;
+    let inside = map.partition_point(|&i| (i as usize) < width);
+    let runs = runs(map);
+    let mut first = 0;
     for j in 0..n {
         let target = map[j] as usize;
-        let source = &child[j * n + j..(j + 1) * n];
-        if target < width {
-            let column = panel.col_mut(target);
-            for (&i, &v) in map[j..].iter().zip(source) {
-                column[i as usize] += v;
-            }
-        } else {
-            let column = update.col_mut(target - width);
-            for (&i, &v) in map[j..].iter().zip(source) {
-                column[i as usize - width] += v;
-            }
+        let column = match j < inside {
+            true => panel.col_mut(target),
+            false => &mut update.col_mut(target - width)[..],
+        };
+        // Rows of the update are counted from the first one below the pivots.
+        let above = if j < inside { 0 } else { width };
+        while runs[first].end <= j {
+            first += 1;
+        }
+        for run in &runs[first..] {
+            let start = run.start.max(j);
+            let to = run.to + (start - run.start) - above;
+            let source = &child[j * n + start..j * n + run.end];
+            let sums = column[to..to + source.len()].iter_mut().zip(source);
+            sums.for_each(|(sum, v)| *sum += v);
         }
     }
+}
+
+/// Rows of a child that stand one after the other in its parent, too.
+struct Rows {
+    start: usize,
+    end: usize,
+    /// Where the first one stands.
+    to: usize,
+}
+
+/// The places in the parent, in such parts.
+fn runs(map: &[u32]) -> Vec<Rows> {
+    let mut start = 0;
+    let runs = map.chunk_by(|a, b| *b == a + 1).map(|run| {
+        let (from, to) = (start, run[0] as usize);
+        start += run.len();
+        Rows {
+            start: from,
+            end: start,
+            to,
+        }
+    });
+    runs.collect()
 }
 
 /// Adds an update (lower triangle) to S.
