@@ -6,13 +6,14 @@ use crate::linalg::dense::{self, Dense, Scratch};
 const OUT: f64 = 1e300;
 
 /// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j is below
-/// `least`, relative to its diagonal entry.
+/// `least`, relative to its diagonal entry. `pause` is called now and then in large fronts.
 pub(super) fn factor_front(
     panel: &mut Dense,
     update: &mut Dense,
     diagonal: &[f64],
     least: f64,
     scratch: &mut Scratch,
+    pause: &mut dyn FnMut(),
 ) -> Result<(), usize> {
     let width = panel.cols;
     let (mut pivot, mut below) = panel.view_mut().split_at_row_mut(width);
@@ -27,10 +28,28 @@ pub(super) fn factor_front(
     if done < width {
         return Err(done);
     }
-    dense::solve_right_transpose(pivot.as_ref(), below.as_mut());
-    dense::rank_k_update(update.view_mut(), -1.0, below.as_ref());
+    for start in (0..below.nrows()).step_by(STRIP) {
+        let n = STRIP.min(below.nrows() - start);
+        let strip = below.as_mut().subrows_mut(start, n);
+        dense::solve_right_transpose(pivot.as_ref(), strip);
+        pause();
+    }
+    let m = update.cols;
+    for start in (0..m).step_by(STRIP) {
+        let n = STRIP.min(m - start);
+        let strip = update.view_mut().submatrix_mut(start, start, m - start, n);
+        let (square, rest) = strip.split_at_row_mut(n);
+        let across = below.as_ref().subrows(start, n);
+        let far = below.as_ref().subrows(start + n, m - start - n);
+        dense::rank_k_update(square, -1.0, across);
+        dense::multiply(rest, true, -1.0, far, across.transpose());
+        pause();
+    }
     Ok(())
 }
+
+/// Number of rows below the pivots that are done between two pauses: a millisecond in the largest fronts.
+const STRIP: usize = 192;
 
 /// The same, but replaces pivots below `least`. Returns their columns, increasing.
 pub(super) fn factor_semidefinite(
@@ -39,12 +58,13 @@ pub(super) fn factor_semidefinite(
     diagonal: &[f64],
     least: f64,
     scratch: &mut Scratch,
+    pause: &mut dyn FnMut(),
 ) -> Vec<usize> {
     // Most fronts have no such pivot. Large products take half the time of those of a group.
     let width = panel.cols;
     let mut square = Vec::with_capacity(width * width);
     (0..width).for_each(|j| square.extend_from_slice(&panel.col(j)[..width]));
-    if factor_front(panel, update, diagonal, least, scratch).is_ok() {
+    if factor_front(panel, update, diagonal, least, scratch, pause).is_ok() {
         return Vec::new();
     }
     for (j, column) in square.chunks_exact(width).enumerate() {
@@ -79,7 +99,7 @@ fn factor_by_groups(
         loop {
             let mut square = Dense::from_fn(end - start, end - start, |i, j| group.get(i, j));
             let own = &diagonal[start..end];
-            match factor_front(&mut square, &mut none, own, least, scratch) {
+            match factor_front(&mut square, &mut none, own, least, scratch, &mut || ()) {
                 Ok(()) => {
                     (0..end - start).for_each(|j| {
                         group.col_mut(j)[..end - start].copy_from_slice(square.col(j));

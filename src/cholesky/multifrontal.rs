@@ -122,7 +122,7 @@ fn factor(
 ) -> Result<(Vec<f64>, Dense), SingularInterior> {
     let mut elimination = Elimination::new(k, sym, kept);
     for f in 0..sym.fronts.len() {
-        elimination.front(f, &mut pivots)?;
+        elimination.front(f, &mut pivots, &mut || ())?;
     }
     let Elimination { panels, mut s, .. } = elimination;
     s.mirror_lower();
@@ -175,8 +175,13 @@ impl<'a> Elimination<'a> {
         self.updates[f] = update;
     }
 
-    /// Eliminates front `f`; its children have been.
-    pub fn front(&mut self, f: usize, pivots: &mut Pivots<'_>) -> Result<(), SingularInterior> {
+    /// Eliminates front `f`; its children have been. `pause` is called now and then if the front is large.
+    pub fn front(
+        &mut self,
+        f: usize,
+        pivots: &mut Pivots<'_>,
+        pause: &mut dyn FnMut(),
+    ) -> Result<(), SingularInterior> {
         let (k, sym) = (self.k, self.sym);
         let (front, place) = (&sym.fronts[f], &mut self.place);
         let (width, size) = (front.width(), front.size());
@@ -220,13 +225,15 @@ impl<'a> Elimination<'a> {
         let scratch = &mut self.scratch;
         match pivots {
             Pivots::Regular => {
-                let done = factor_front(&mut panel, &mut update, &diagonal, SINGULAR, scratch);
+                let done =
+                    factor_front(&mut panel, &mut update, &diagonal, SINGULAR, scratch, pause);
                 done.map_err(|j| SingularInterior {
                     dof: sym.interior[front.start + j],
                 })?;
             }
             Pivots::Above(least, left) => {
-                let weak = factor_semidefinite(&mut panel, &mut update, &diagonal, *least, scratch);
+                let weak =
+                    factor_semidefinite(&mut panel, &mut update, &diagonal, *least, scratch, pause);
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }

@@ -42,7 +42,7 @@ impl SharedCholesky {
                     elimination.give(child, square(&lower, n));
                 }
                 for &f in &team.own[run.fronts.clone()] {
-                    let done = elimination.front(f, &mut pivots);
+                    let done = elimination.front(f, &mut pivots, &mut || post.progress());
                     done.expect("no pivot is too small");
                     post.progress();
                 }

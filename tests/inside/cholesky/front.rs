@@ -29,7 +29,8 @@ fn a_front_at_once_and_by_groups_are_the_same() {
             let weak = how(&mut panel, &mut update, &diagonal, 1e-12, scratch);
             (panel, update, weak)
         };
-        let (at_once, left, none) = run(factor_semidefinite);
+        let (at_once, left, none) =
+            run(|p, u, d, least, s| factor_semidefinite(p, u, d, least, s, &mut || ()));
         let (by_groups, left_by_groups, none_either) = run(factor_by_groups);
         assert!(none.is_empty() && none_either.is_empty());
         let largest = panel.data.iter().fold(0.0f64, |a, v| a.max(v.abs()));
@@ -62,7 +63,7 @@ fn columns_that_repeat_are_left_out_of_a_wide_front() {
     let diagonal: Vec<f64> = (0..n).map(|j| panel.get(j, j)).collect();
     let mut none = Dense::zeros(0, 0);
     let scratch = &mut Scratch::default();
-    let weak = factor_semidefinite(&mut panel, &mut none, &diagonal, 1e-10, scratch);
+    let weak = factor_semidefinite(&mut panel, &mut none, &diagonal, 1e-10, scratch, &mut || ());
     assert_eq!(weak, [70, 110]);
     // L Lᵀ is the matrix in the other columns.
     for j in (0..n).filter(|&j| of(j) == j) {
