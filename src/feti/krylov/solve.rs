@@ -85,7 +85,17 @@ impl LinearMethod {
             // of zero asks for all possible digits.
             refined.status = status;
         }
-        self.certify(refined)
+        if enough.is_some() || !refined.status.broke_down() {
+            return self.certify(refined);
+        }
+        // The operators have lost their digits; the displacements need not have. The certificate says whether they are
+        // a solution all the same.
+        let broken = std::mem::replace(&mut refined.status, Status::Rounding);
+        let mut certified = self.certify(refined)?;
+        if !certified.status.converged() {
+            certified.status = broken;
+        }
+        Ok(certified)
     }
 
     /// Whether λ₀ is the solution already, as the judge sees it: a run without iterations, with the displacements of
