@@ -6,7 +6,8 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use super::coupled::Coupled;
-use super::{dependent, scaling};
+use super::dependent;
+use super::scaling::Known;
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
@@ -161,8 +162,14 @@ impl Block {
     }
 
     /// The entries of all rows; those in `active` hold to begin with.
-    pub(crate) fn start(&mut self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
-        self.hold(first, |_| true, active, send);
+    pub(crate) fn start(
+        &mut self,
+        first: usize,
+        active: &[bool],
+        known: &mut Known,
+        send: &mut impl FnMut(Entry),
+    ) {
+        self.hold(first, |_| true, active, known, send);
     }
 
     /// Prepares B_D for the rows in `active` (one per row of the block) and sends the entries that change with them:
@@ -173,6 +180,7 @@ impl Block {
         first: usize,
         change: impl Fn(usize) -> bool,
         active: &[bool],
+        known: &mut Known,
         send: &mut impl FnMut(Entry),
     ) {
         // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is then the
@@ -188,7 +196,7 @@ impl Block {
         };
         match &mut self.form {
             Form::Dense(b) => {
-                let bd = scaling::block(b, &self.scaling, active);
+                let bd = known.block(b, &self.scaling, active);
                 for r in 0..active.len() {
                     (0..b.cols).for_each(|j| send(r, j, b.get(r, j), bd.get(r, j)));
                 }

@@ -49,6 +49,8 @@ pub struct Jump {
     pub active: Vec<bool>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
+    /// The scalings of blocks so far.
+    pub(super) known: scaling::Known,
     /// The block of each owned row of B_gl.
     pub(super) block_of: Vec<u32>,
     /// The dofs of coupled blocks.
@@ -132,9 +134,10 @@ impl Jump {
         let locals_hold = std::iter::repeat_n(true, n_owned_local);
         let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
         let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
+        let mut known = scaling::Known::default();
         for block in &mut blocks {
             let active = &active[block.rows.clone()];
-            block.start(first, active, &mut send);
+            block.start(first, active, &mut known, &mut send);
         }
 
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
@@ -157,6 +160,7 @@ impl Jump {
             averages: sharing.averages.clone(),
             active,
             blocks,
+            known,
             order,
             local_start: per_subdomain,
             rank_of: sharing.rank_of.clone(),

@@ -4,6 +4,10 @@
 //! an average: jumps of any size in the coefficients cost no digits. Inverting B D⁻¹ Bᵀ would cost digits. B B_Dᵀ B = B
 //! follows from B P_D = B.
 
+use std::borrow::Cow;
+
+use rustc_hash::FxHashMap;
+
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 
@@ -29,6 +33,30 @@ pub fn pair_entry(weights: &[f64], (a, b): (usize, usize), c: usize) -> f64 {
         .enumerate()
         .map(|(k, w)| w * (value(c) - value(k)));
     differences.sum::<f64>() / (total * weights.len() as f64)
+}
+
+/// B_D of blocks that are alike to the last bit: a regular scene has few that differ, and each takes an SVD.
+#[derive(Debug, Default)]
+pub struct Known(FxHashMap<Vec<u64>, Dense>);
+
+impl Known {
+    /// More than these are no regular scene; they are forgotten.
+    const MOST: usize = 2000;
+
+    /// [`block`], computed once.
+    pub fn block(&mut self, b: &Dense, weights: &[f64], active: &[bool]) -> Cow<'_, Dense> {
+        if active.iter().filter(|on| **on).count() < 2 {
+            return Cow::Owned(block(b, weights, active));
+        }
+        let values = b.data.iter().chain(weights).map(|v| v.to_bits());
+        let rows = active.iter().map(|on| u64::from(*on));
+        let key: Vec<u64> = rows.chain([b.cols as u64]).chain(values).collect();
+        if self.0.len() >= Known::MOST && !self.0.contains_key(&key) {
+            self.0.clear();
+        }
+        let of = self.0.entry(key);
+        Cow::Borrowed(of.or_insert_with(|| block(b, weights, active)))
+    }
 }
 
 /// B_D of one block of contact rows.

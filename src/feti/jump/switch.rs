@@ -66,6 +66,7 @@ impl Jump {
                 self.first,
                 |r| old[r] != new[r],
                 new,
+                &mut self.known,
                 &mut |entry: Entry| {
                     let to = self.rank_of[entry.subdomain as usize];
                     outgoing[to as usize].push(entry);

@@ -80,3 +80,27 @@ fn redundant_pairs_and_the_general_block_agree() {
         }
     }
 }
+
+#[test]
+fn blocks_that_are_alike_have_one_scaling() {
+    let rows = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [1.0, 0.0, -1.0]];
+    let b = Dense::from_fn(3, 3, |i, j| rows[i][j]);
+    let mut known = Known::default();
+    for (weights, active) in [
+        ([1.0, 2.0, 3.0], [true, true, true]),
+        ([1.0, 2.0, 3.0], [true, false, true]),
+        ([1.0, 2.0, 4.0], [true, true, true]),
+        ([1.0, 2.0, 3.0], [false, true, false]),
+        ([1.0, 2.0, 3.0], [true, true, true]),
+    ] {
+        let expected = block(&b, &weights, &active);
+        let found = known.block(&b, &weights, &active);
+        assert_eq!(found.data, expected.data);
+    }
+    assert_eq!(known.0.len(), 3);
+    // Many that differ do not add up.
+    for k in 0..Known::MOST + 10 {
+        known.block(&b, &[1.0, 2.0, 5.0 + k as f64], &[true; 3]);
+    }
+    assert!(known.0.len() <= Known::MOST);
+}
