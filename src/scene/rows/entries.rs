@@ -32,7 +32,9 @@ pub(crate) fn find(
     let mut weak = Vec::new();
     for (k, interface) in interfaces.iter_mut().enumerate() {
         entries.apply(bodies, interface, default.as_ref(), Factors::last(steps))?;
-        if interface.shape == Shape::Corner && !entries.tie_names(interface.bodies) {
+        let tied = |i: &Interface| i.shared.iter().any(|s| s.link == Link::Tied);
+        let is_corner = interface.shape == Shape::Corner;
+        if is_corner && tied(interface) && !entries.tie_names(interface.bodies) {
             weak.push(k);
         }
     }
@@ -77,6 +79,9 @@ fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
 /// Removes unwanted corner ties. The corner pairs in `weak` are tied only because an entry ties all pairs. If one of
 /// the two nodes is in contact elsewhere, the tie would close that contact and is removed.
 fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
+    if weak.is_empty() {
+        return;
+    }
     let mut in_contact: HashSet<(usize, usize)> = HashSet::new();
     for i in interfaces.iter() {
         for s in i.shared.iter().filter(|s| s.link.is_contact()) {
