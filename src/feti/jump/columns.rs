@@ -22,6 +22,18 @@ pub struct JumpColumns {
 }
 
 impl JumpColumns {
+    /// Empty lists with room for `n` entries.
+    pub(super) fn with_room(n: usize) -> JumpColumns {
+        JumpColumns {
+            row: Vec::with_capacity(n),
+            at: Vec::with_capacity(n),
+            b: Vec::with_capacity(n),
+            bd: Vec::with_capacity(n),
+            contact: Vec::with_capacity(n),
+            ..JumpColumns::default()
+        }
+    }
+
     /// v ← Bᵀ λ on this subdomain's interface.
     pub fn b_transpose(&self, ghost: &[f64], v: &mut [f64]) {
         v.fill(0.0);

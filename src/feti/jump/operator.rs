@@ -225,6 +225,8 @@ impl Jump {
             here[sub.index] = j;
         }
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
+        let of_contact = entries.iter().filter(|e| e.contact).count();
+        self.places.reserve_exact(of_contact);
         for (k, e) in (0..).zip(&entries) {
             let row = seen.place(e.row as u32);
             dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
@@ -232,7 +234,7 @@ impl Jump {
         for (j, sub) in problem.local.iter().enumerate() {
             let mut mine = std::mem::take(&mut dealt[j]);
             mine.sort_unstable();
-            let mut columns = JumpColumns::default();
+            let mut columns = JumpColumns::with_room(mine.len());
             // Corners of a body with several subdomains are primal too, but not those of a solid. With ν near 1/2,
             // holding a corner makes the coarse functions stiffer than the cut that it saves.
             let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
@@ -265,6 +267,8 @@ impl Jump {
             corners.dedup();
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
+            dual.shrink_to_fit();
+            columns.contact.shrink_to_fit();
             self.n_shared.push(primal.len());
             primal.extend(corners);
             self.columns.push(columns);

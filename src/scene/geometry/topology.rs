@@ -91,7 +91,9 @@ pub(crate) fn rigid_motions(body: &Body, mesh: &SubdomainMesh) -> Vec<Vec<f64>> 
     let (centre, _) = body.ball();
     let c = mesh.components();
     let n_modes = if c == 2 { 3 } else { 6 };
-    let mut out = vec![Vec::with_capacity(mesh.n_free()); n_modes];
+    // A clone of an empty vector has no room.
+    let column = |_| Vec::with_capacity(mesh.n_free());
+    let mut out: Vec<Vec<f64>> = (0..n_modes).map(column).collect();
     for (node, &point) in mesh.points.iter().enumerate() {
         let modes = cell::rigid_motions(mesh.dim, centre, size, point);
         for component in 0..c {

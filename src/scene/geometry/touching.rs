@@ -30,6 +30,7 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
         }
     }
     out.sort_by_key(|i| i.bodies);
+    out.shrink_to_fit();
     Ok(out)
 }
 
