@@ -51,7 +51,7 @@ pub(super) fn factor_front(
 /// Number of rows below the pivots that are done between two pauses: a millisecond in the largest fronts.
 const STRIP: usize = 192;
 
-/// The same, but replaces pivots below `least`. Returns their columns, increasing.
+/// [`factor_front`], but pivots below `least` are replaced. Returns their columns, increasing.
 pub(super) fn factor_semidefinite(
     panel: &mut Dense,
     update: &mut Dense,
