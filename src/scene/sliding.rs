@@ -12,7 +12,7 @@ use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 use crate::mortar::across;
-use crate::parallel::exchange::{gather_all, Record};
+use crate::parallel::exchange::{exchange_words, Record};
 use crate::petsc::Session;
 use crate::substructures::{BodyNode, RowSource, SolvedRow};
 
@@ -38,8 +38,8 @@ impl Sliding {
     }
 }
 
-/// The sliding of the interfaces and obstacles that touch at load step `step`, on every rank, from the rows that this
-/// rank has. `u` has the displacements since the pairing was made, of the bodies of these rows. Collective.
+/// The sliding of the interfaces and obstacles that touch at load step `step`, on rank 0, from the rows that each rank
+/// has. `u` has the displacements since the pairing was made, of the bodies of these rows. Collective.
 ///
 /// # Panics
 /// For a step that the scene does not have.
@@ -54,7 +54,8 @@ pub(crate) fn slid(
     let mut rows: Vec<SolvedRow> = touching.copied().collect();
     rows.sort_by_key(|r| r.label.source);
     let sliders = Sliders::new(scene, step, &bodies_of(&rows));
-    let mut words = Vec::new();
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    let words = &mut outgoing[0];
     for rows in rows.chunk_by(|a, b| a.label.source == b.label.source) {
         let source = rows[0].label.source;
         let Sliding {
@@ -62,11 +63,11 @@ pub(crate) fn slid(
             over_face,
             turned,
         } = sliders.of(rows, u);
-        source.pack(&mut words);
+        source.pack(words);
         words.extend([largest, over_face, turned].map(f64::to_bits));
     }
     let mut all: BTreeMap<RowSource, Sliding> = BTreeMap::new();
-    for words in gather_all(session.comm(), &words) {
+    for words in exchange_words(session.comm(), outgoing) {
         for words in words.chunks_exact(RowSource::WORDS + 3) {
             let (source, values) = words.split_at(RowSource::WORDS);
             let [largest, over_face, turned] = [0, 1, 2].map(|k| f64::from_bits(values[k]));
