@@ -62,13 +62,15 @@ pub(super) fn factor_semidefinite(
 ) -> Vec<usize> {
     // Most fronts have no such pivot. Large products take half the time of those of a group.
     let width = panel.cols;
-    let mut square = Vec::with_capacity(width * width);
-    (0..width).for_each(|j| square.extend_from_slice(&panel.col(j)[..width]));
+    let square = panel.lower();
     if factor_front(panel, update, diagonal, least, scratch, pause).is_ok() {
         return Vec::new();
     }
-    for (j, column) in square.chunks_exact(width).enumerate() {
-        panel.col_mut(j)[..width].copy_from_slice(column);
+    let mut rest = &square[..];
+    for j in 0..width {
+        let (column, after) = rest.split_at(width - j);
+        panel.col_mut(j)[j..width].copy_from_slice(column);
+        rest = after;
     }
     factor_by_groups(panel, update, diagonal, least, scratch)
 }

@@ -138,10 +138,13 @@ pub(super) struct Elimination<'a> {
     pub panels: Vec<f64>,
     /// S so far.
     s: Dense,
-    /// What fronts leave to their parents: lower triangles of the rows below, until the parents take them.
+    /// What fronts leave to their parents: lower triangles of the rows below, column by column, until the parents take
+    /// them.
     updates: Vec<Vec<f64>>,
     children: Vec<Vec<usize>>,
     place: Vec<u32>,
+    /// The panel and the update of the front that is eliminated. They keep their memory from front to front.
+    room: [Dense; 2],
     scratch: Scratch,
 }
 
@@ -151,16 +154,17 @@ impl<'a> Elimination<'a> {
             k,
             sym,
             kept,
-            panels: vec![0.0; kept.storage],
+            panels: Vec::with_capacity(kept.storage),
             s: schur_start(k, sym),
             updates: vec![Vec::new(); sym.fronts.len()],
             children: vec![Vec::new(); sym.fronts.len()],
             place: vec![0u32; k.n()],
+            room: Default::default(),
             scratch: Scratch::default(),
         }
     }
 
-    /// Takes the update that front `f` leaves to its parent.
+    /// Takes the update that front `f` leaves to its parent: the lower triangle, column by column.
     pub fn take(&mut self, f: usize) -> Vec<f64> {
         let parent = self.sym.fronts[f].parent;
         let siblings = &mut self.children[parent.expect("there is a parent")];
@@ -168,14 +172,14 @@ impl<'a> Elimination<'a> {
         std::mem::take(&mut self.updates[f])
     }
 
-    /// Gives front `f` this update, as if it had been eliminated here.
+    /// Gives front `f` this update, a lower triangle, as if it had been eliminated here.
     pub fn give(&mut self, f: usize, update: Vec<f64>) {
         let parent = self.sym.fronts[f].parent;
         self.children[parent.expect("there is a parent")].push(f);
         self.updates[f] = update;
     }
 
-    /// Eliminates front `f`; its children have been. `pause` is called now and then if the front is large.
+    /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the front is large.
     pub fn front(
         &mut self,
         f: usize,
@@ -185,8 +189,9 @@ impl<'a> Elimination<'a> {
         let (k, sym) = (self.k, self.sym);
         let (front, place) = (&sym.fronts[f], &mut self.place);
         let (width, size) = (front.width(), front.size());
-        let mut panel = Dense::zeros(size, width);
-        let mut update = Dense::zeros(size - width, size - width);
+        let [panel, update] = &mut self.room;
+        panel.become_zero(size, width);
+        update.become_lower_zero(size - width);
 
         for (l, &p) in front.below.iter().enumerate() {
             place[p as usize] = (width + l) as u32;
@@ -214,40 +219,28 @@ impl<'a> Elimination<'a> {
         self.children[f].sort_unstable();
         for &c in &self.children[f] {
             let child = &sym.fronts[c];
-            extend_add(
-                &mut panel,
-                &mut update,
-                &child.into_parent,
-                &self.updates[c],
-            );
-            self.updates[c] = Vec::new();
+            let left = std::mem::take(&mut self.updates[c]);
+            extend_add(panel, update, &child.into_parent, &left);
         }
         let scratch = &mut self.scratch;
         match pivots {
             Pivots::Regular => {
-                let done =
-                    factor_front(&mut panel, &mut update, &diagonal, SINGULAR, scratch, pause);
+                let done = factor_front(panel, update, &diagonal, SINGULAR, scratch, pause);
                 done.map_err(|j| SingularInterior {
                     dof: sym.interior[front.start + j],
                 })?;
             }
             Pivots::Above(least, left) => {
-                let weak =
-                    factor_semidefinite(&mut panel, &mut update, &diagonal, *least, scratch, pause);
+                let weak = factor_semidefinite(panel, update, &diagonal, *least, scratch, pause);
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }
         let into = &self.kept.fronts[f];
-        panel::store(
-            &panel.data,
-            size,
-            width,
-            into.size(),
-            &mut self.panels[into.panel..],
-        );
+        debug_assert_eq!(into.panel, self.panels.len(), "panels come in their order");
+        panel::append(&panel.data, size, width, into.size(), &mut self.panels);
         match front.parent {
             Some(t) => {
-                self.updates[f] = update.data;
+                self.updates[f] = update.lower();
                 self.children[t].push(f);
             }
             None => add_lower(&mut self.s, &front.into_parent, &update.data),
@@ -273,8 +266,8 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
     s
 }
 
-/// Adds a child's update (lower triangle) into its parent's front, which consists of a panel and an update.
-fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], child: &[f64]) {
+/// Adds a child's update, a lower triangle column by column, into its parent's front: a panel and an update.
+fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], mut child: &[f64]) {
     let n = map.len();
     let width = panel.cols;
     let inside = map.partition_point(|&i| (i as usize) < width);
@@ -291,10 +284,12 @@ fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], child: &[f64])
         while runs[first].end <= j {
             first += 1;
         }
+        let (of_child, rest) = child.split_at(n - j);
+        child = rest;
         for run in &runs[first..] {
             let start = run.start.max(j);
             let to = run.to + (start - run.start) - above;
-            let source = &child[j * n + start..j * n + run.end];
+            let source = &of_child[start - j..run.end - j];
             let sums = column[to..to + source.len()].iter_mut().zip(source);
             sums.for_each(|(sum, v)| *sum += v);
         }

@@ -51,19 +51,17 @@ pub fn entry(i: usize, j: usize, width: usize, size: usize) -> usize {
     start + n * n + lot * n + column * rows + below % LOT
 }
 
-/// Stores the first `size` rows of `width` columns that lie `stride` apart.
-pub fn store(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut [f64]) {
-    let mut rest = &mut out[..length(width, size)];
+/// Appends the first `size` rows of `width` columns that lie `stride` apart.
+pub fn append(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut Vec<f64>) {
     for j in (0..width).step_by(COLUMNS) {
         let n = COLUMNS.min(width - j);
         let mut row = j;
         while row < size {
             let rows = if row == j { n } else { LOT.min(size - row) };
-            let (lot, after) = rest.split_at_mut(n * rows);
-            for (k, lot) in lot.chunks_exact_mut(rows).enumerate() {
-                lot.copy_from_slice(&columns[(j + k) * stride + row..][..rows]);
+            for k in j..j + n {
+                out.extend_from_slice(&columns[k * stride + row..][..rows]);
             }
-            (rest, row) = (after, row + rows);
+            row += rows;
         }
     }
 }

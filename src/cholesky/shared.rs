@@ -38,8 +38,7 @@ impl SharedCholesky {
             for run in &team.runs {
                 for &(child, from) in &run.children {
                     let n = rows_below(child);
-                    let lower = received(comm, from, n * (n + 1) / 2);
-                    elimination.give(child, square(&lower, n));
+                    elimination.give(child, received(comm, from, n * (n + 1) / 2));
                 }
                 for &f in &team.own[run.fronts.clone()] {
                     let done = elimination.front(f, &mut pivots, &mut || post.progress());
@@ -47,8 +46,7 @@ impl SharedCholesky {
                     post.progress();
                 }
                 if let Some(to) = run.parent {
-                    let f = team.last(run);
-                    post.send(to, lower(&elimination.take(f), rows_below(f)));
+                    post.send(to, elimination.take(team.last(run)));
                 }
             }
         });
@@ -205,25 +203,4 @@ impl SharedCholesky {
         }
         vectors
     }
-}
-
-/// The lower triangle of an update of n rows, column by column.
-fn lower(update: &[f64], n: usize) -> Vec<f64> {
-    let mut out = Vec::with_capacity(n * (n + 1) / 2);
-    for j in 0..n {
-        out.extend_from_slice(&update[j * n + j..(j + 1) * n]);
-    }
-    out
-}
-
-/// The update with this lower triangle; zero above it.
-fn square(lower: &[f64], n: usize) -> Vec<f64> {
-    let mut update = vec![0.0; n * n];
-    let mut rest = lower;
-    for j in 0..n {
-        let (column, tail) = rest.split_at(n - j);
-        update[j * n + j..(j + 1) * n].copy_from_slice(column);
-        rest = tail;
-    }
-    update
 }

@@ -248,14 +248,13 @@ impl Symbolic {
         Symbolic::of_factor(self.interior.clone(), &self.interface, fronts)
     }
 
-    /// The same with room for the panels of these fronts alone.
-    pub(crate) fn with_panels(mut self, has: impl Fn(usize) -> bool) -> Symbolic {
+    /// The same with room for the panels of these fronts alone, in this order.
+    pub(crate) fn with_panels(mut self, own: &[usize]) -> Symbolic {
         self.storage = 0;
-        for (f, front) in self.fronts.iter_mut().enumerate() {
+        for &f in own {
+            let front = &mut self.fronts[f];
             front.panel = self.storage;
-            if has(f) {
-                self.storage += panel::length(front.width(), front.size());
-            }
+            self.storage += panel::length(front.width(), front.size());
         }
         self
     }

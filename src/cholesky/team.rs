@@ -84,7 +84,7 @@ impl Team {
         let own_rows = distinct(rows.clone().flat_map(|f| f.start as u32..f.end as u32));
         let below = rows.flat_map(|f| f.below.iter().copied());
         let ghost_rows = distinct(below.filter(|&p| places[p as usize].rank != rank));
-        let symbolic = symbolic.with_panels(|f| shares[f].rank == rank);
+        let symbolic = symbolic.with_panels(&own);
         Team {
             comm,
             symbolic: symbolic.into(),

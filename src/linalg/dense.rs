@@ -36,6 +36,28 @@ impl Dense {
         }
     }
 
+    /// Becomes the zero matrix of this size, in the memory that it has.
+    pub fn become_zero(&mut self, rows: usize, cols: usize) {
+        (self.rows, self.cols) = (rows, cols);
+        self.data.clear();
+        self.data.resize(rows * cols, 0.0);
+    }
+
+    /// Becomes a square matrix with a lower triangle of zeros, in the memory that it has. Entries above are any.
+    pub fn become_lower_zero(&mut self, n: usize) {
+        (self.rows, self.cols) = (n, n);
+        self.data.resize(n * n, 0.0);
+        (0..n).for_each(|j| self.col_mut(j)[j..].fill(0.0));
+    }
+
+    /// The lower triangle of the leading square, column by column.
+    pub fn lower(&self) -> Vec<f64> {
+        let n = self.cols;
+        let mut out = Vec::with_capacity(n * (n + 1) / 2);
+        (0..n).for_each(|j| out.extend_from_slice(&self.col(j)[j..n]));
+        out
+    }
+
     /// The matrix with entries `of(i, j)`.
     pub fn from_fn(rows: usize, cols: usize, of: impl Fn(usize, usize) -> f64) -> Dense {
         let mut out = Dense::zeros(rows, cols);

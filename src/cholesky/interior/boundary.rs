@@ -55,23 +55,16 @@ pub fn split(
     let fronts: Vec<_> = fronts.map(|p| (p.start, inside(p), below(p))).collect();
     let length =
         |(_, width, below): &(usize, usize, Vec<u32>)| panel::length(*width, width + below.len());
-    let mut values = vec![0.0; fronts.iter().map(length).sum()];
+    let mut values = Vec::with_capacity(fronts.iter().map(length).sum());
     let mut kept = fronts.iter();
-    let mut at = 0;
     let mut l = Dense::zeros(n, n);
     let mut pivots = Vec::with_capacity(interior);
     for panel in panels {
         let (width, size) = (inside(panel), size(panel));
         if width > 0 {
             let front = kept.next().expect("a front for each of these");
-            panel::store(
-                panel.values,
-                size,
-                width,
-                width + front.2.len(),
-                &mut values[at..],
-            );
-            at += length(front);
+            let rows = width + front.2.len();
+            panel::append(panel.values, size, width, rows, &mut values);
         }
         pivots.extend((0..width).map(|j| panel.values[j * size + j]));
         for j in width..panel.width {

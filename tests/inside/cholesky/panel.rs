@@ -28,13 +28,14 @@ fn squares_come_first_and_rows_in_lots() {
         let columns: Vec<f64> = (0..width)
             .flat_map(|j| (0..stride).map(move |i| value(i, j)))
             .collect();
-        let mut out = vec![0.0; length(width, size)];
-        store(&columns, stride, width, size, &mut out);
+        let mut out = Vec::new();
+        append(&columns, stride, width, size, &mut out);
         let expected: Vec<f64> = order(width, size)
             .iter()
             .map(|&(i, j)| value(i, j))
             .collect();
         assert_eq!(out, expected, "{width} {size}");
+        assert_eq!(out.len(), length(width, size));
         for j in 0..width {
             assert_eq!(out[diagonal(j, width, size)], value(j, j));
         }

@@ -17,8 +17,8 @@ fn panels_of_every_width_are_solved_with() {
         let size = width + below;
         let columns = columns(width, size);
         let l = |i: usize, j: usize| columns[j * size + i];
-        let mut panel = vec![0.0; panel::length(width, size)];
-        panel::store(&columns, size, width, size, &mut panel);
+        let mut panel = Vec::new();
+        panel::append(&columns, size, width, size, &mut panel);
         let start = random(size, 5);
 
         let mut work = start.clone();
