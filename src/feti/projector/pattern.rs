@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::rows::Rows;
 use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::gather_all;
@@ -189,25 +190,37 @@ impl Pattern {
         chosen: impl Fn(usize) -> bool,
         on: impl Fn(u32) -> bool,
     ) {
-        for i in (0..a.n()).filter(|&i| chosen(i)) {
-            let ((left, x), (right, y)) = (a.entries(i), b.entries(i));
-            for p in runs(&self.body, left) {
-                let row_of = self.body[left[p.start] as usize];
-                if !on(row_of) {
-                    continue;
-                }
+        let mut sum = Dense::default();
+        let mut blocks: Vec<(Range<usize>, Range<usize>, [usize; 2])> = Vec::new();
+        for (rows, [left, right]) in a.alike(b) {
+            // The columns of two bodies; where those of the second begin in a row of the matrix, and the first of them.
+            blocks.clear();
+            for p in runs(&self.body, left).filter(|p| on(self.body[left[p.start] as usize])) {
                 for q in runs(&self.body, right) {
                     let of = self.body[right[q.start] as usize];
-                    if !on(of) {
-                        continue;
+                    if on(of) {
+                        let place = self.place(self.body[left[p.start] as usize], of);
+                        blocks.push((p.clone(), q, [place, self.start[of as usize]]));
                     }
-                    let place = self.place(row_of, of);
-                    let first = self.start[of as usize];
-                    for k in p.clone() {
-                        let row = self.row_ptr[left[k] as usize] + place;
-                        for l in q.clone() {
-                            val[row + right[l] as usize - first] += x[k] * y[l];
-                        }
+                }
+            }
+            let mut rows = rows.iter().filter(|&&i| chosen(i as usize)).peekable();
+            if blocks.is_empty() || rows.peek().is_none() {
+                continue;
+            }
+            sum.become_zero(right.len(), left.len());
+            for &i in rows {
+                let (x, y) = (a.entries(i as usize).1, b.entries(i as usize).1);
+                for (column, x) in sum.data.chunks_exact_mut(right.len()).zip(x) {
+                    column.iter_mut().zip(y).for_each(|(s, y)| *s += x * y);
+                }
+            }
+            for (p, q, [place, first]) in &blocks {
+                for k in p.clone() {
+                    let row = self.row_ptr[left[k] as usize] + place;
+                    let sums = &sum.col(k)[q.clone()];
+                    for (&l, s) in right[q.clone()].iter().zip(sums) {
+                        val[row + l as usize - first] += s;
                     }
                 }
             }

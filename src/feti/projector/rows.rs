@@ -182,6 +182,21 @@ impl Rows {
         all.filter(|(_, columns, _)| !columns.is_empty())
     }
 
+    /// Rows that have the same columns, in these rows and in those of `other`: their numbers, and both sets of columns.
+    pub fn alike<'a>(
+        &'a self,
+        other: &'a Rows,
+    ) -> impl Iterator<Item = (&'a [u32], [&'a [u32]; 2])> {
+        let group = |&i: &u32| other.layout.row[i as usize].1;
+        self.groups().flat_map(move |(rows, columns, _)| {
+            let same = rows.chunk_by(move |i, j| group(i) == group(j));
+            same.map(move |rows| {
+                let of_other = other.layout.columns_of(group(&rows[0]) as usize);
+                (rows, [columns, of_other])
+            })
+        })
+    }
+
     /// out ← out + Aᵀ λ, this rank's share.
     pub fn add_transpose(&self, lambda: &[f64], out: &mut [f64]) {
         let mut sums = Vec::new();
