@@ -2,9 +2,10 @@
 
 use super::body::{bounds_of, Body};
 use super::deck::DeckScenes;
-use super::geometry::interface::{mostly_tied, Interface};
+use super::geometry::interface::mostly_tied;
 use super::geometry::matching::Matching;
 use super::geometry::{loose, overlap};
+use super::interfaces::Interfaces;
 use super::model::expr::Expr;
 use super::model::grid::GridSpec;
 use super::model::joints::Pair;
@@ -61,7 +62,7 @@ pub struct Scene {
     /// The bodies.
     pub bodies: Vec<Body>,
     /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
-    pub interfaces: Vec<Interface>,
+    pub interfaces: Interfaces,
     /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`Point::block`].
     pub points: Vec<Point>,
     /// Equations between displacements beside those of ties.
@@ -212,9 +213,10 @@ impl Scene {
         spec.notes.extend(deep);
         validate::check_unknowns(&bodies)?;
         let tied = mostly_tied(&interfaces);
-        if part != Part::WHOLE {
-            part::forget(&mut interfaces, &bodies, &points, &owns);
-        }
+        let interfaces = match part {
+            Part::WHOLE => interfaces.into(),
+            part => part::needed(interfaces, &bodies, &points, part),
+        };
         Ok(Scene {
             options: spec.options,
             title: spec.title,

@@ -183,7 +183,7 @@ impl Scene {
         of: impl Fn(usize) -> bool,
     ) -> BTreeSet<(usize, usize)> {
         let mut out = BTreeSet::new();
-        for (k, interface) in self.interfaces.iter().enumerate() {
+        for (k, interface) in self.interfaces.numbered() {
             let bodies = interface.bodies.into_iter().filter(|&b| of(b));
             for body in bodies.filter(|_| interface.has_contact()) {
                 let side = self.side_of(RowSource::Interface(k), body);

@@ -25,6 +25,7 @@ pub(crate) mod distribution;
 #[cfg(feature = "cli")]
 pub(crate) mod fits;
 pub(crate) mod geometry;
+mod interfaces;
 mod joint;
 mod loads;
 mod matrices;
@@ -50,6 +51,7 @@ pub use checked::Scene;
 pub use deck::DeckScenes;
 pub use displaced::Displaced;
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
+pub use interfaces::Interfaces;
 pub use loads::{SteppedMesh, Stepping};
 pub use model::body::{
     free_all_round, held_all_round, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, SIDES,

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::body::Body;
 use super::geometry::interface::Interface;
+use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
@@ -57,24 +58,33 @@ impl Part {
     }
 }
 
-/// Drops what interfaces know node by node, unless one of their bodies or a row at one of `points` needs it.
-pub(super) fn forget(
-    interfaces: &mut [Interface],
+/// The interfaces that a rank needs: those of its bodies and of the rows at `points`. The first rank reports all; of
+/// the others it drops what they know node by node.
+pub(super) fn needed(
+    mut interfaces: Vec<Interface>,
     bodies: &[Body],
     points: &[Point],
-    owns: &dyn Fn(usize) -> bool,
-) {
+    part: Part,
+) -> Interfaces {
+    let owns = part.owns(bodies);
     let own = |body: &usize| {
         let first = bodies[*body].first_subdomain;
-        (first..first + bodies[*body].mesh().n_subdomains()).any(owns)
+        (first..first + bodies[*body].mesh().n_subdomains()).any(&owns)
     };
     let rows = points.iter().flat_map(|p| &p.rows);
     let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
+    let needs = |k: usize, interface: &Interface| {
+        interface.bodies.iter().any(own) || used.contains(&RowSource::Interface(k))
+    };
+    if part.rank > 0 {
+        return Interfaces::part(interfaces, needs);
+    }
     for (k, interface) in interfaces.iter_mut().enumerate() {
-        if !interface.bodies.iter().any(own) && !used.contains(&RowSource::Interface(k)) {
+        if !needs(k, interface) {
             interface.forget_nodes();
         }
     }
+    interfaces.into()
 }
 
 /// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may

@@ -48,7 +48,7 @@ impl Scene {
         }
         self.bodies = bodies;
         let (interfaces, obstacles, rows) = found?;
-        (self.interfaces, self.obstacles) = (interfaces, obstacles);
+        (self.interfaces, self.obstacles) = (interfaces.into(), obstacles);
         (self.points, self.mortar, self.equations) = (rows.points, rows.mortar, rows.equations);
         Ok(())
     }

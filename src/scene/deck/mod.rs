@@ -146,7 +146,7 @@ impl DeckScenes {
         // In a deck nothing is joined that no keyword joins.
         let loose = loose::sentences(
             &scene.bodies,
-            &scene.interfaces,
+            scene.interfaces.known(),
             &scene.equations,
             &scene.form,
             loose::Language::Deck,

@@ -1,0 +1,91 @@
+//! The interfaces of a scene, or those that one rank needs, by their number in the scene.
+
+use std::ops::Index;
+
+use super::geometry::interface::Interface;
+
+/// The interfaces of a scene, by their number in it. A rank that has read its part may know those alone that it needs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Interfaces {
+    known: Vec<Interface>,
+    /// The numbers of those that are known, increasing; `None`: all are.
+    numbers: Option<Vec<u32>>,
+    /// How many the scene has.
+    count: usize,
+}
+
+impl From<Vec<Interface>> for Interfaces {
+    fn from(known: Vec<Interface>) -> Interfaces {
+        Interfaces {
+            count: known.len(),
+            known,
+            numbers: None,
+        }
+    }
+}
+
+impl Index<usize> for Interfaces {
+    type Output = Interface;
+
+    /// # Panics
+    /// If the scene has no such interface, or the part does not know it.
+    fn index(&self, number: usize) -> &Interface {
+        let at = match &self.numbers {
+            None => number,
+            Some(numbers) => numbers
+                .binary_search(&(number as u32))
+                .expect("a part knows the interfaces of its bodies and rows"),
+        };
+        &self.known[at]
+    }
+}
+
+impl Interfaces {
+    /// Those of the list, which are all, that `needs` selects by number.
+    pub(super) fn part(
+        all: Vec<Interface>,
+        needs: impl Fn(usize, &Interface) -> bool,
+    ) -> Interfaces {
+        let count = all.len();
+        let numbered = all.into_iter().enumerate();
+        let (numbers, known) = numbered
+            .filter(|(k, interface)| needs(*k, interface))
+            .map(|(k, interface)| (k as u32, interface))
+            .unzip();
+        let (mut numbers, mut known): (Vec<u32>, Vec<Interface>) = (numbers, known);
+        numbers.shrink_to_fit();
+        known.shrink_to_fit();
+        Interfaces {
+            known,
+            numbers: Some(numbers),
+            count,
+        }
+    }
+
+    /// How many the scene has.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the scene has none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Those that are known, by increasing number.
+    pub fn iter(&self) -> std::slice::Iter<'_, Interface> {
+        self.known.iter()
+    }
+
+    /// The same with their numbers.
+    pub fn numbered(&self) -> impl Iterator<Item = (usize, &Interface)> {
+        let number = |at: usize| self.numbers.as_ref().map_or(at, |n| n[at] as usize);
+        let known = self.known.iter().enumerate();
+        known.map(move |(at, interface)| (number(at), interface))
+    }
+
+    /// Those that are known, by increasing number.
+    pub fn known(&self) -> &[Interface] {
+        &self.known
+    }
+}
