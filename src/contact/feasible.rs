@@ -66,7 +66,7 @@ fn contradicts(n: usize, bt: impl Fn(usize, usize) -> f64, c: &[f64], free: &[bo
 /// The sentence about these rows of a block.
 fn contradiction(problem: &Substructures, block: &Block, rows: &[usize]) -> Error {
     let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
-    let bodies = distinct(block.bodies.iter().map(name));
+    let bodies = distinct(block.bodies().iter().map(name));
     let place = match block.place(problem, rows) {
         None => String::new(),
         Some([x, y, 0.0]) => format!(" at ({x}, {y})"),

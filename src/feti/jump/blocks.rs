@@ -28,21 +28,27 @@ pub enum Form {
 pub struct Block {
     /// Owned rows of the block (indices among this rank's rows).
     pub rows: Range<usize>,
-    /// Body dofs that the rows touch.
-    pub dofs: Vec<u64>,
     /// B.
     pub form: Form,
     /// The dofs of a coupled block among those of all coupled blocks of this rank; empty for others.
     pub slots: Range<usize>,
-    /// D summed over the copies of each dof.
-    pub weights: Vec<f64>,
-    /// The weights in B_D: D summed over as many copies as those dofs of the same body have that have the fewest. Along
+    /// The body dofs that the rows touch.
+    dofs: Box<[Dof]>,
+    /// Their copies, dof after dof. There are as many blocks as points where bodies meet: lists are few and tight.
+    copies: Box<[Copy]>,
+}
+
+/// A body dof in a block.
+#[derive(Debug)]
+struct Dof {
+    /// D summed over its copies.
+    weight: f64,
+    /// The weight in B_D: D summed over as many copies as those dofs of the same body have that have the fewest. Along
     /// a side, the nodes at which subdomains meet then weigh no more than others.
-    scaling: Vec<f64>,
-    /// Body of each dof.
-    pub bodies: Vec<u32>,
-    /// The copies of each dof.
-    copies: Vec<Vec<Copy>>,
+    scaling: f64,
+    body: u32,
+    /// The end of its copies, which begin where those of the dof before end.
+    end: u32,
 }
 
 /// One entry of B and B_D on its way to the rank of its subdomain.
@@ -104,7 +110,7 @@ impl Block {
             Form::Coupled(coupled) => coupled.dofs(rows).iter().map(|&j| j as usize).collect(),
         };
         let dofs: Vec<usize> = dofs;
-        let copies = dofs.iter().flat_map(|&j| &self.copies[j]);
+        let copies = dofs.iter().flat_map(|&j| self.copies_of(j));
         let place = |copy: &Copy| {
             let index = |sub: &&crate::Subdomain| sub.index == copy.subdomain as usize;
             let sub = problem.local.iter().find(index)?;
@@ -118,14 +124,19 @@ impl Block {
         match &self.form {
             Form::Dense(b) => {
                 let inside = (0..b.cols).filter(|&j| b.get(r, j) != 0.0);
-                inside.map(|j| self.bodies[j]).collect()
+                inside.map(|j| self.dofs[j].body).collect()
             }
             Form::Coupled(coupled) => {
                 let (dofs, values) = coupled.row(r);
                 let inside = dofs.iter().zip(values).filter(|e| *e.1 != 0.0);
-                inside.map(|e| self.bodies[*e.0 as usize]).collect()
+                inside.map(|e| self.dofs[*e.0 as usize].body).collect()
             }
         }
+    }
+
+    /// The bodies of its dofs, increasing.
+    pub fn bodies(&self) -> Vec<u32> {
+        distinct(self.dofs.iter().map(|dof| dof.body))
     }
 
     /// The rows of `on` that may depend on each other, and B on them: all of a point; those of a coupled block that do.
@@ -156,9 +167,14 @@ impl Block {
         }
     }
 
+    /// The copies of a dof.
+    fn copies_of(&self, dof: usize) -> &[Copy] {
+        copies_of(&self.dofs, &self.copies, dof)
+    }
+
     /// The copies of each dof.
-    pub(super) fn copies(&self) -> &[Vec<Copy>] {
-        &self.copies
+    pub(super) fn copies(&self) -> impl Iterator<Item = &[Copy]> {
+        (0..self.dofs.len()).map(|dof| self.copies_of(dof))
     }
 
     /// The entries of all rows; those in `active` hold to begin with.
@@ -185,18 +201,19 @@ impl Block {
     ) {
         // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is then the
         // same on all of them, as a function in W̃ must be.
-        let (start, copies, weights) = (self.rows.start, &self.copies, &self.weights);
+        let (start, dofs, copies) = (self.rows.start, &self.dofs, &self.copies);
         let mut send = |r: usize, j: usize, value: f64, bd: f64| {
             let row = (first + start + r) as u64;
-            for copy in &copies[j] {
-                let full = value * copy.weight / weights[j];
+            for copy in copies_of(dofs, copies, j) {
+                let full = value * copy.weight / dofs[j].weight;
                 let b = if active[r] { full } else { 0.0 };
                 send(Entry::new(row, copy, true, [full, b, bd]));
             }
         };
         match &mut self.form {
             Form::Dense(b) => {
-                let bd = known.block(b, &self.scaling, active);
+                let scaling: Vec<f64> = dofs.iter().map(|dof| dof.scaling).collect();
+                let bd = known.block(b, &scaling, active);
                 for r in 0..active.len() {
                     (0..b.cols).for_each(|j| send(r, j, b.get(r, j), bd.get(r, j)));
                 }
@@ -242,6 +259,12 @@ impl Block {
     }
 }
 
+/// The copies of a dof in a block.
+fn copies_of<'a>(dofs: &[Dof], copies: &'a [Copy], dof: usize) -> &'a [Copy] {
+    let start = dof.checked_sub(1).map_or(0, |before| dofs[before].end);
+    &copies[start as usize..dofs[dof].end as usize]
+}
+
 /// The values at these places.
 fn pick<T: Clone>(values: &[T], at: &[usize]) -> Vec<T> {
     at.iter().map(|&i| values[i].clone()).collect()
@@ -265,22 +288,14 @@ pub(crate) fn collect(
             let found = dofs.binary_search(dof);
             found.expect("every term's dof was collected")
         };
-        let copies: Vec<Vec<Copy>> = dofs.iter().map(|dof| sharing.copies[dof].clone()).collect();
-        let weights: Vec<f64> = copies
-            .iter()
-            .map(|copies| copies.iter().map(|c| c.weight).sum())
-            .collect();
-        let bodies: Vec<u32> = copies
-            .iter()
-            .map(|copies| sharing.body_of[copies[0].subdomain as usize])
-            .collect();
-        let scaling = even(&weights, &bodies, &copies);
+        let (of_block, copies) = weighed(&dofs, sharing);
         let form = if rows.len() > many {
             let row = |&r: &usize| {
                 let terms = problem.rows[r].terms.iter();
                 terms.map(|t| (place(&t.0) as u32, t.1)).collect()
             };
             let rows: Vec<_> = rows.iter().map(row).collect();
+            let scaling: Vec<f64> = of_block.iter().map(|dof| dof.scaling).collect();
             Form::Coupled(Box::new(Coupled::new(&rows, &scaling)))
         } else {
             let mut b = Dense::zeros(rows.len(), dofs.len());
@@ -300,11 +315,8 @@ pub(crate) fn collect(
         blocks.push(Block {
             rows: start..end,
             slots: slots..slots + coupled,
-            dofs,
             form,
-            scaling,
-            weights,
-            bodies,
+            dofs: of_block,
             copies,
         });
         start = end;
@@ -313,17 +325,33 @@ pub(crate) fn collect(
     (order, blocks)
 }
 
-/// The weights of B_D from sums over copies.
-fn even(sums: &[f64], bodies: &[u32], copies: &[Vec<Copy>]) -> Vec<f64> {
+/// These dofs with their weights, and all their copies.
+fn weighed(dofs: &[u64], sharing: &Sharing) -> (Box<[Dof]>, Box<[Copy]>) {
+    let lists = dofs.iter().map(|dof| &sharing.copies[dof]);
+    let copies: Box<[Copy]> = lists.clone().flatten().copied().collect();
+    // The fewest copies of a dof of each body.
     let mut fewest: FxHashMap<u32, usize> = FxHashMap::default();
-    for (body, list) in bodies.iter().zip(copies) {
-        let n = fewest.entry(*body).or_insert(list.len());
+    let body = |list: &[Copy]| sharing.body_of[list[0].subdomain as usize];
+    let most = lists.clone().map(Vec::len).max();
+    let same = lists.clone().all(|list| Some(list.len()) == most);
+    for list in lists.clone().filter(|_| !same) {
+        let n = fewest.entry(body(list)).or_insert(list.len());
         *n = list.len().min(*n);
     }
-    let of_dof = sums.iter().zip(bodies).zip(copies);
-    let weight = |((sum, body), list): ((&f64, &u32), &Vec<Copy>)| match fewest[body] {
-        n if n == list.len() => *sum,
-        n => sum * n as f64 / list.len() as f64,
+    let mut end = 0;
+    let dof = |list: &Vec<Copy>| {
+        end += list.len() as u32;
+        let (body, weight) = (body(list), list.iter().map(|c| c.weight).sum());
+        let scaling = match fewest.get(&body) {
+            Some(&n) if n < list.len() => weight * n as f64 / list.len() as f64,
+            _ => weight,
+        };
+        Dof {
+            weight,
+            scaling,
+            body,
+            end,
+        }
     };
-    of_dof.map(weight).collect()
+    (lists.clone().map(dof).collect(), copies)
 }

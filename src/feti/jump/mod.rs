@@ -7,6 +7,7 @@ pub mod deluxe;
 pub mod dependent;
 mod ghost_rows;
 pub mod operator;
+mod places;
 pub mod scaling;
 mod switch;
 pub mod weights;

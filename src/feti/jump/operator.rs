@@ -13,6 +13,7 @@ use super::columns::JumpColumns;
 use super::coupled::slots::Slots;
 use super::coupled::MANY;
 use super::ghost_rows::GhostRows;
+use super::places::{Place, Places};
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};
@@ -64,8 +65,8 @@ pub struct Jump {
     pub(crate) rank_of: Vec<u32>,
     /// Global indices of the local subdomains, increasing.
     pub(crate) subdomains: Vec<u32>,
-    /// Places of the entries of B_gl: (ghost row, local subdomain, its dof, entry), increasing.
-    pub(crate) places: Vec<(u32, u32, u32, u32)>,
+    /// Where the subdomains have the entries of B_gl.
+    pub(super) places: Places,
     /// Entries by local subdomain.
     pub columns: Vec<JumpColumns>,
     /// Dual interface dofs of each local subdomain, increasing.
@@ -226,7 +227,7 @@ impl Jump {
         }
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
         let of_contact = entries.iter().filter(|e| e.contact).count();
-        self.places.reserve_exact(of_contact);
+        let mut places: Vec<(u32, Place)> = Vec::with_capacity(of_contact);
         for (k, e) in (0..).zip(&entries) {
             let row = seen.place(e.row as u32);
             dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
@@ -246,7 +247,13 @@ impl Jump {
                 if e.contact {
                     let k = columns.row.len() as u32;
                     columns.contact.push((k, e.full));
-                    self.places.push((row, j as u32, e.local, k));
+                    let (subdomain, dof) = (j as u32, e.local);
+                    let place = Place {
+                        subdomain,
+                        dof,
+                        entry: k,
+                    };
+                    places.push((row, place));
                 }
                 columns.row.push(row);
                 columns.at.push(e.local);
@@ -275,7 +282,7 @@ impl Jump {
             self.delta.push(dual);
             self.primal.push(primal);
         }
-        self.places.sort_unstable();
+        self.places = Places::new(self.ghosts.len(), &places);
     }
 
     /// The local subdomain with this global index.

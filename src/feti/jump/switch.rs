@@ -75,17 +75,16 @@ impl Jump {
         }
         self.active.copy_from_slice(active);
         self.reconcile(blocks.iter().map(|&k| k as usize));
+        let mut ghost = 0;
         for entry in exchange(comm, outgoing) {
-            let j = self.subdomains.binary_search(&entry.subdomain);
-            let j = j.expect("entries go to the rank of their subdomain");
-            let row = self.ghosts.binary_search(&(entry.row as u32));
-            let key = (
-                row.expect("rows of a block are ghosts of its subdomains") as u32,
-                j as u32,
-                entry.local,
-            );
-            let at = self.places.binary_search_by_key(&key, |p| (p.0, p.1, p.2));
-            let k = self.places[at.expect("the entry was there before")].3 as usize;
+            let j = self.local_index(entry.subdomain);
+            // Entries of a row follow each other.
+            let row = entry.row as u32;
+            if self.ghosts.get(ghost) != Some(&row) {
+                let found = self.ghosts.binary_search(&row);
+                ghost = found.expect("rows of a block are ghosts of its subdomains");
+            }
+            let k = self.places.entry(ghost, j as u32, entry.local);
             self.columns[j].b[k] = entry.b;
             self.columns[j].bd[k] = entry.bd;
         }

@@ -31,7 +31,7 @@ impl BodyGraph {
         let mut touched = terms.clone();
         let mut pairs: Vec<u64> = Vec::new();
         for block in &jump.blocks {
-            let bodies = distinct(block.bodies.iter().copied());
+            let bodies = block.bodies();
             for r in 0..block.rows.len() {
                 terms.push(block.bodies_of(r));
                 touched.push(bodies.clone());
