@@ -50,3 +50,7 @@ impl Places {
         found.expect("the entry was there before").entry as usize
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/jump/places.rs"]
+mod tests;

@@ -106,7 +106,11 @@ fn parts_have_the_rows_of_the_whole() {
                     };
                     assert_eq!(given(&part), given(&whole), "{file}");
                     assert_eq!(part.notes, whole.notes);
-                    let contact = |s: &Scene| s.sides_that_may_touch(|_| true);
+                    let own = |b: usize| {
+                        let first = whole.bodies[b].first_subdomain;
+                        (first..first + whole.bodies[b].mesh().n_subdomains()).any(&owns)
+                    };
+                    let contact = |s: &Scene| s.sides_that_may_touch(own);
                     assert_eq!(contact(&part), contact(&whole), "{file}");
                     rows += part.rows(&owns).len();
                     // Rows that lead from point to point need all points.
@@ -116,6 +120,37 @@ fn parts_have_the_rows_of_the_whole() {
                 }
                 assert_eq!(rows, whole.rows(&|_| true).len(), "{file}");
             }
+        }
+    }
+}
+
+#[test]
+fn parts_know_the_interfaces_of_their_bodies_and_rows() {
+    let file = "examples/scenes/arch_stands.toml";
+    let whole = Scene::load(file).expect(file);
+    assert!(whole.interfaces.len() > 10);
+    let ranks = 4;
+    for rank in 0..ranks {
+        let part = Part {
+            cyclic: false,
+            ranks,
+            rank,
+        };
+        let scene = Scene::load_if(Path::new(file), |_| Ok(part)).expect(file);
+        assert_eq!(scene.interfaces.len(), whole.interfaces.len());
+        let known: Vec<(usize, &Interface)> = scene.interfaces.numbered().collect();
+        // The first rank reports all.
+        assert_eq!(known.len() == whole.interfaces.len(), rank == 0, "{rank}");
+        let rows = scene.points.iter().flat_map(|p| &p.rows);
+        let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
+        let share = share(&scene.bodies, ranks, rank);
+        let own = |&body: &usize| share.contains(&scene.bodies[body].first_subdomain);
+        for (k, interface) in whole.interfaces.numbered() {
+            let needs = interface.bodies.iter().any(own) || used.contains(&RowSource::Interface(k));
+            if needs {
+                assert_eq!(&scene.interfaces[k], interface, "{rank}: {k}");
+            }
+            assert!(rank == 0 || needs == known.iter().any(|(n, _)| *n == k));
         }
     }
 }
