@@ -36,6 +36,11 @@ pub struct Problem {
     pub contact: bool,
 }
 
+/// Whether deflation is never worth its cost, whatever the graph of so many bodies and rigid motions.
+pub fn is_never(bodies: usize, r: usize) -> bool {
+    r > FEW && VECTORS * bodies as f64 + r as f64 > MOST as f64
+}
+
 /// The eigenvalue λ from which deflation takes less time than it saves, by the iterations of CG with κ = λ,
 ///
 /// ```text
@@ -49,7 +54,7 @@ pub fn from(graph: &BodyGraph, start: &[usize], problem: Problem) -> f64 {
     if r <= FEW {
         return 0.0;
     }
-    if VECTORS * graph.n as f64 + r as f64 > MOST as f64 {
+    if is_never(graph.n, r) {
         return f64::INFINITY;
     }
     // Two columns can share a product if neither reaches what is near the other's rows.

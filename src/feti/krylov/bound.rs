@@ -53,6 +53,10 @@ impl LinearMethod {
             if natural.r <= FEW {
                 return 0.0;
             }
+            // The graph of so many bodies takes time and memory on every rank.
+            if worth::is_never(self.problem.n_bodies, natural.r) {
+                return f64::INFINITY;
+            }
             let graph = natural.graph(&self.problem, &dual.stiffness);
             let problem = worth::Problem {
                 wide: natural.projector == ProjectorKind::Preconditioner,
