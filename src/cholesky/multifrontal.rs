@@ -179,7 +179,8 @@ impl<'a> Elimination<'a> {
         self.updates[f] = update;
     }
 
-    /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the front is large.
+    /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the
+    /// front is large.
     pub fn front(
         &mut self,
         f: usize,
@@ -236,7 +237,7 @@ impl<'a> Elimination<'a> {
             }
         }
         let into = &self.kept.fronts[f];
-        debug_assert_eq!(into.panel, self.panels.len(), "panels come in their order");
+        debug_assert_eq!(into.panel, self.panels.len());
         panel::append(&panel.data, size, width, into.size(), &mut self.panels);
         match front.parent {
             Some(t) => {
