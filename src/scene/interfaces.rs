@@ -40,6 +40,15 @@ impl Index<usize> for Interfaces {
     }
 }
 
+impl<'a> IntoIterator for &'a Interfaces {
+    type Item = &'a Interface;
+    type IntoIter = std::slice::Iter<'a, Interface>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
 impl Interfaces {
     /// Those of the list, which are all, that `needs` selects by number.
     pub(super) fn part(
@@ -47,12 +56,8 @@ impl Interfaces {
         needs: impl Fn(usize, &Interface) -> bool,
     ) -> Interfaces {
         let count = all.len();
-        let numbered = all.into_iter().enumerate();
-        let (numbers, known) = numbered
-            .filter(|(k, interface)| needs(*k, interface))
-            .map(|(k, interface)| (k as u32, interface))
-            .unzip();
-        let (mut numbers, mut known): (Vec<u32>, Vec<Interface>) = (numbers, known);
+        let needed = (0..).zip(all).filter(|(k, i)| needs(*k as usize, i));
+        let (mut numbers, mut known): (Vec<u32>, Vec<Interface>) = needed.unzip();
         numbers.shrink_to_fit();
         known.shrink_to_fit();
         Interfaces {

@@ -104,11 +104,18 @@ fn same(a: &Found, b: &Found, tolerance: f64, what: &str) {
         a.iterations,
         b.iterations
     );
+    // κ is read off CG, which knows the ends of the spectrum better after an iteration more.
+    let known = match a.iterations == b.iterations {
+        true => 1e-4,
+        false => 1e-3,
+    };
     assert!(
-        near(a.kappa, b.kappa, 1e-4),
-        "{what}: {} {}",
+        near(a.kappa, b.kappa, known),
+        "{what}: {} {} in {} and {} iterations",
         a.kappa,
-        b.kappa
+        b.kappa,
+        a.iterations,
+        b.iterations
     );
     assert!(
         near(a.energy, b.energy, 1e-12),
