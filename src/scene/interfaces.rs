@@ -88,9 +88,4 @@ impl Interfaces {
         let known = self.known.iter().enumerate();
         known.map(move |(at, interface)| (number(at), interface))
     }
-
-    /// Those that are known, by increasing number.
-    pub fn known(&self) -> &[Interface] {
-        &self.known
-    }
 }

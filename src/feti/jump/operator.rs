@@ -13,7 +13,7 @@ use super::columns::JumpColumns;
 use super::coupled::slots::Slots;
 use super::coupled::MANY;
 use super::ghost_rows::GhostRows;
-use super::places::{Place, Places};
+use super::places::{EntryPlaces, Place};
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};
@@ -66,7 +66,7 @@ pub struct Jump {
     /// Global indices of the local subdomains, increasing.
     pub(crate) subdomains: Vec<u32>,
     /// Where the subdomains have the entries of B_gl.
-    pub(super) places: Places,
+    pub(super) places: EntryPlaces,
     /// Entries by local subdomain.
     pub columns: Vec<JumpColumns>,
     /// Dual interface dofs of each local subdomain, increasing.
@@ -282,7 +282,7 @@ impl Jump {
             self.delta.push(dual);
             self.primal.push(primal);
         }
-        self.places = Places::new(self.ghosts.len(), &places);
+        self.places = EntryPlaces::new(self.ghosts.len(), &places);
     }
 
     /// The local subdomain with this global index.

@@ -13,15 +13,15 @@ pub(super) struct Place {
 
 /// The places of all entries, by ghost row.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Places {
+pub(super) struct EntryPlaces {
     /// Where the places of each row begin, and the end.
     start: Vec<u32>,
     places: Vec<Place>,
 }
 
-impl Places {
+impl EntryPlaces {
     /// Sorts places of `n` rows, given with their rows.
-    pub fn new(n: usize, given: &[(u32, Place)]) -> Places {
+    pub fn new(n: usize, given: &[(u32, Place)]) -> EntryPlaces {
         let mut start = vec![0u32; n + 1];
         for (row, _) in given {
             start[*row as usize + 1] += 1;
@@ -36,7 +36,7 @@ impl Places {
             places[*at as usize] = *place;
             *at += 1;
         }
-        Places { start, places }
+        EntryPlaces { start, places }
     }
 
     /// The entry of a ghost row at a dof of a local subdomain, in the lists of the subdomain.

@@ -146,7 +146,7 @@ impl DeckScenes {
         // In a deck nothing is joined that no keyword joins.
         let loose = loose::sentences(
             &scene.bodies,
-            scene.interfaces.known(),
+            scene.interfaces.iter().as_slice(),
             &scene.equations,
             &scene.form,
             loose::Language::Deck,

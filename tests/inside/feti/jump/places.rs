@@ -18,7 +18,7 @@ fn entries_are_found_by_row_subdomain_and_dof() {
         entry,
     };
     let list: Vec<(u32, Place)> = given.iter().map(|(row, p)| (*row, place(*p))).collect();
-    let places = Places::new(4, &list);
+    let places = EntryPlaces::new(4, &list);
     for (row, [subdomain, dof, entry]) in given {
         assert_eq!(places.entry(row as usize, subdomain, dof), entry as usize);
     }
