@@ -77,7 +77,7 @@ pub(super) fn solve(
 
 /// Loose inner problems may have misled the sets if there was no progress for this many steps and more than [`MANY`]
 /// rows are wrong.
-const MISLED: usize = 2;
+const MISLED: usize = 3;
 const MANY: usize = 8;
 
 /// Factor by which inner problems are then solved more exactly.
