@@ -224,7 +224,7 @@ pub fn jump_of(solver: &FetiFeti) -> (Mat<f64>, Mat<f64>) {
     let (mut b, mut bd) = (Mat::zeros(m, n), Mat::zeros(m, n));
     let mut start = 0;
     for (j, sub) in problem.local.iter().enumerate() {
-        let columns = &stiffness.jump.columns[j];
+        let columns = stiffness.jump.columns.of(j);
         for e in 0..columns.row.len() {
             let row = stiffness.jump.ghosts[columns.row[e] as usize] as usize;
             let copy =

@@ -154,8 +154,8 @@ pub fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [Cla
     for (c, class) in classes.iter().enumerate() {
         class.at.iter().for_each(|&i| of[i] = Some(c));
     }
-    let columns = &jump.columns[j];
-    for (k, (&row, &at)) in columns.row.iter().zip(&columns.at).enumerate() {
+    let columns = jump.columns.of(j);
+    for (k, (&row, &at)) in columns.row.iter().zip(columns.at).enumerate() {
         if let Some(c) = of[at as usize].filter(|_| !jump.ghost_is_contact[row as usize]) {
             classes[c].entries.push(k as u32);
         }

@@ -189,7 +189,7 @@ fn signature(
             class.at.len() as u64,
         ]);
         out.extend(class.at.iter().map(|&i| i as u64));
-        let columns = &jump.columns[j];
+        let columns = jump.columns.of(j);
         out.push(class.entries.len() as u64);
         for &k in &class.entries {
             let k = k as usize;
@@ -242,7 +242,7 @@ fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &
 /// from the entries of B_D.
 fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
     let (n, q) = (class.at.len(), class.sharers.len());
-    let columns = &jump.columns[j];
+    let columns = jump.columns.of(j);
     let place: HashMap<u32, usize> = class.at.iter().map(|&i| i as u32).zip(0..).collect();
     let entries = class.entries.iter().map(|&k| {
         let k = k as usize;

@@ -56,7 +56,7 @@ impl Balance {
                     if pencil.colour(j) == colour && p < defect(self.body[j]) {
                         v.clear();
                         v.resize(stiffness.locals[j].gamma().n_gamma(), 0.0);
-                        stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
+                        stiffness.jump.columns.of(j).b_transpose(&ghost, &mut v);
                         f.rows = v.len();
                         f.cols = p + 1;
                         f.data.extend(&v);

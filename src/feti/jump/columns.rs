@@ -1,43 +1,163 @@
-//! The entries of B and B_D in the columns of one subdomain, on interface positions, side by side.
+//! The entries of B and B_D in the columns of each subdomain, on interface positions, side by side.
+//!
+//! Products with many small subdomains wait for memory. The lists of all subdomains follow each other, so that they are
+//! read in one go.
 
 use super::coupled::slots::Places;
 
-/// The entries of B and B_D in the columns of one subdomain.
+/// The entries of B and B_D in the columns of the local subdomains, one subdomain after the other.
 #[derive(Debug, Clone, Default)]
-pub struct JumpColumns {
-    /// Ghost row of each entry.
-    pub row: Vec<u32>,
-    /// Interface position (index into Γ) of each entry; the local dof before
-    /// [`Jump::place`](super::operator::Jump::place).
-    pub at: Vec<u32>,
-    /// Entry of Z B; zero where only B_D has one, and in rows that do not hold.
-    pub b: Vec<f64>,
-    /// Entry of Z B_D; zero in coupled blocks.
-    pub bd: Vec<f64>,
-    /// (Ghost, interface position) of each dof in a coupled block; (ghost, local dof) before
-    /// [`Jump::place`](super::operator::Jump::place).
-    pub coupled: Places,
-    /// Entries of B_gl: (place in the lists above, value in B whether or not the row holds).
-    pub contact: Vec<(u32, f64)>,
+pub struct JumpEntries {
+    /// Where the lists of each subdomain begin, and the end.
+    start: Vec<Start>,
+    row: Vec<u32>,
+    at: Vec<u32>,
+    b: Vec<f64>,
+    bd: Vec<f64>,
+    contact: Vec<(u32, f64)>,
+    coupled: Vec<Places>,
 }
 
-impl JumpColumns {
-    /// Empty lists with room for `n` entries.
-    pub(super) fn with_room(n: usize) -> JumpColumns {
-        JumpColumns {
-            row: Vec::with_capacity(n),
-            at: Vec::with_capacity(n),
-            b: Vec::with_capacity(n),
-            bd: Vec::with_capacity(n),
-            contact: Vec::with_capacity(n),
-            ..JumpColumns::default()
+/// Where lists begin.
+#[derive(Debug, Clone, Copy, Default)]
+struct Start {
+    entries: usize,
+    contact: usize,
+}
+
+/// An entry of B and B_D.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct JumpEntry {
+    pub row: u32,
+    pub at: u32,
+    pub b: f64,
+    pub bd: f64,
+}
+
+/// The entries of B and B_D in the columns of one subdomain.
+#[derive(Debug, Clone, Copy)]
+pub struct JumpColumns<'a> {
+    /// Ghost row of each entry.
+    pub row: &'a [u32],
+    /// Interface position (index into Γ) of each entry; the local dof before
+    /// [`Jump::place`](super::operator::Jump::place).
+    pub at: &'a [u32],
+    /// Entry of Z B; zero where only B_D has one, and in rows that do not hold.
+    pub b: &'a [f64],
+    /// Entry of Z B_D; zero in coupled blocks.
+    pub bd: &'a [f64],
+    /// (Ghost, interface position) of each dof in a coupled block; (ghost, local dof) before
+    /// [`Jump::place`](super::operator::Jump::place).
+    pub coupled: &'a [(u32, u32)],
+    /// Entries of B_gl: (place in the lists above, value in B whether or not the row holds).
+    pub contact: &'a [(u32, f64)],
+}
+
+impl JumpEntries {
+    /// No subdomain yet, and room for `entries` entries, of which `contact` are those of B_gl.
+    pub(super) fn with_room(entries: usize, contact: usize) -> JumpEntries {
+        JumpEntries {
+            start: vec![Start::default()],
+            row: Vec::with_capacity(entries),
+            at: Vec::with_capacity(entries),
+            b: Vec::with_capacity(entries),
+            bd: Vec::with_capacity(entries),
+            contact: Vec::with_capacity(contact),
+            coupled: Vec::new(),
         }
     }
 
+    /// Adds an entry to the subdomain that is being listed; returns its place in the lists of that.
+    pub(super) fn push(&mut self, entry: JumpEntry) -> u32 {
+        self.row.push(entry.row);
+        self.at.push(entry.at);
+        self.b.push(entry.b);
+        self.bd.push(entry.bd);
+        let first = self.start.last().map_or(0, |s| s.entries);
+        (self.row.len() - 1 - first) as u32
+    }
+
+    /// Notes the value in B, whether or not the row holds, of an entry of B_gl.
+    pub(super) fn push_contact(&mut self, place: u32, full: f64) {
+        self.contact.push((place, full));
+    }
+
+    /// Ends the lists of a subdomain.
+    pub(super) fn end(&mut self) {
+        self.start.push(Start {
+            entries: self.row.len(),
+            contact: self.contact.len(),
+        });
+    }
+
+    /// Sets the dofs of each subdomain in coupled blocks.
+    pub(super) fn couple(&mut self, places: Vec<Places>) {
+        self.coupled = places;
+    }
+
+    /// Replaces the entry of B with place `k` in the lists of subdomain `j`.
+    pub(super) fn set_b(&mut self, j: usize, k: usize, value: f64) {
+        self.b[self.start[j].entries + k] = value;
+    }
+
+    /// Replaces the entry of B_D with place `k` in the lists of subdomain `j`.
+    pub(super) fn set_bd(&mut self, j: usize, k: usize, value: f64) {
+        self.bd[self.start[j].entries + k] = value;
+    }
+
+    /// Changes the positions of the entries of subdomain `j`.
+    pub(super) fn renumber(&mut self, j: usize, new: impl Fn(u32) -> u32) {
+        let of = self.start[j].entries..self.start[j + 1].entries;
+        let coupled = self.coupled[j].iter_mut().map(|c| &mut c.1);
+        for at in self.at[of].iter_mut().chain(coupled) {
+            *at = new(*at);
+        }
+    }
+
+    /// The same with more entries at the end of the lists of each subdomain.
+    pub(super) fn extended(self, more: &[Vec<JumpEntry>]) -> JumpEntries {
+        let n = more.iter().map(Vec::len).sum::<usize>();
+        let mut out = JumpEntries::with_room(self.row.len() + n, self.contact.len());
+        for (old, more) in self.iter().zip(more) {
+            out.row.extend_from_slice(old.row);
+            out.at.extend_from_slice(old.at);
+            out.b.extend_from_slice(old.b);
+            out.bd.extend_from_slice(old.bd);
+            for &entry in more {
+                out.push(entry);
+            }
+            out.contact.extend_from_slice(old.contact);
+            out.end();
+        }
+        out.coupled = self.coupled;
+        out
+    }
+
+    /// Those of local subdomain `j`.
+    pub fn of(&self, j: usize) -> JumpColumns<'_> {
+        let (from, to) = (self.start[j], self.start[j + 1]);
+        let entries = from.entries..to.entries;
+        JumpColumns {
+            row: &self.row[entries.clone()],
+            at: &self.at[entries.clone()],
+            b: &self.b[entries.clone()],
+            bd: &self.bd[entries],
+            coupled: self.coupled.get(j).map_or(&[], |places| places),
+            contact: &self.contact[from.contact..to.contact],
+        }
+    }
+
+    /// Those of all local subdomains.
+    pub fn iter(&self) -> impl Iterator<Item = JumpColumns<'_>> {
+        (0..self.start.len().saturating_sub(1)).map(|j| self.of(j))
+    }
+}
+
+impl JumpColumns<'_> {
     /// v ← Bᵀ λ on this subdomain's interface.
     pub fn b_transpose(&self, ghost: &[f64], v: &mut [f64]) {
         v.fill(0.0);
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
+        for ((&r, &i), &b) in self.row.iter().zip(self.at).zip(self.b) {
             v[i as usize] += b * ghost[r as usize];
         }
     }
@@ -45,7 +165,7 @@ impl JumpColumns {
     /// v ← Bᵀ λ with all rows of B_gl, including those that do not hold.
     pub fn b_transpose_all(&self, ghost: &[f64], v: &mut [f64]) {
         self.b_transpose(ghost, v);
-        for &(k, full) in &self.contact {
+        for &(k, full) in self.contact {
             let k = k as usize;
             v[self.at[k] as usize] += (full - self.b[k]) * ghost[self.row[k] as usize];
         }
@@ -53,7 +173,7 @@ impl JumpColumns {
 
     /// ghost ← ghost + B y on the rows of B_gl, including those that do not hold.
     pub fn add_contact(&self, y: &[f64], ghost: &mut [f64]) {
-        for &(k, full) in &self.contact {
+        for &(k, full) in self.contact {
             let k = k as usize;
             ghost[self.row[k] as usize] += full * y[self.at[k] as usize];
         }
@@ -85,7 +205,7 @@ impl JumpColumns {
     }
 
     fn add_coupled(&self, ghosts: &ScaledGhosts, v: &mut [f64]) {
-        for &(slot, at) in &self.coupled {
+        for &(slot, at) in self.coupled {
             v[at as usize] += ghosts.dofs[slot as usize];
         }
     }
@@ -93,7 +213,7 @@ impl JumpColumns {
     /// v ← B_Dᵀ λ with the ghost rows that `rows` selects.
     fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
         v.fill(0.0);
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
+        for ((&r, &i), &b) in self.row.iter().zip(self.at).zip(self.bd) {
             if rows(r as usize) {
                 v[i as usize] += b * ghost[r as usize];
             }
@@ -102,7 +222,7 @@ impl JumpColumns {
 
     /// ghost ← ghost + B y.
     pub fn add_b(&self, y: &[f64], ghost: &mut [f64]) {
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
+        for ((&r, &i), &b) in self.row.iter().zip(self.at).zip(self.b) {
             ghost[r as usize] += b * y[i as usize];
         }
     }
@@ -110,10 +230,10 @@ impl JumpColumns {
     /// Adds this subdomain's part of B_D y to the ghosts.
     pub fn add_bd(&self, y: &[f64], ghosts: &mut ScaledGhosts) {
         let ghost = &mut ghosts.rows;
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
+        for ((&r, &i), &b) in self.row.iter().zip(self.at).zip(self.bd) {
             ghost[r as usize] += b * y[i as usize];
         }
-        for &(slot, at) in &self.coupled {
+        for &(slot, at) in self.coupled {
             ghosts.dofs[slot as usize] += y[at as usize];
         }
     }

@@ -14,6 +14,7 @@ use std::collections::{BTreeMap, HashMap};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::columns::JumpEntry;
 use super::operator::Jump;
 use crate::feti::adaptive::classes::{self, Class};
 use crate::feti::interface::sharing::Sharing;
@@ -32,7 +33,10 @@ pub fn apply(
 ) {
     let groups: Vec<Vec<Class>> = (0..locals.len())
         .map(|j| {
-            let between = jump.columns[j].between_bodies(locals[j].gamma().n_gamma());
+            let between = jump
+                .columns
+                .of(j)
+                .between_bodies(locals[j].gamma().n_gamma());
             classes::of(&problem.local[j], sharing, &locals[j], |i| !between[i])
         })
         .collect();
@@ -66,16 +70,18 @@ pub fn apply(
             rest = tail;
         }
     }
+    let mut more = vec![Vec::new(); locals.len()];
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
             let schur = &received[&(sub.index as u64, group.name())];
             // All sharers add the same numbers in the same order, so that their results are identical.
             if let Some(weights) = group.weights(schur.values()) {
                 let own = group.sharers.binary_search(&(sub.index as u32));
-                group.replace(jump, j, own.expect("a sharer"), &weights);
+                group.replace(jump, j, (own.expect("a sharer"), &weights), &mut more[j]);
             }
         }
     }
+    jump.columns = std::mem::take(&mut jump.columns).extended(&more);
 }
 
 impl Class {
@@ -104,17 +110,24 @@ impl Class {
         Some(schur.map(solve).collect())
     }
 
-    /// Replaces B_D in the rows of this group on copy number `c`, that of local subdomain `j`.
-    fn replace(&self, jump: &mut Jump, j: usize, c: usize, weights: &[Dense]) {
+    /// Replaces B_D in the rows of this group on copy number `c`, that of local subdomain `j`. Entries at places where
+    /// it has none yet are added to `more`.
+    fn replace(
+        &self,
+        jump: &mut Jump,
+        j: usize,
+        (c, weights): (usize, &[Dense]),
+        more: &mut Vec<JumpEntry>,
+    ) {
         let (n, q) = (self.at.len(), self.sharers.len());
-        let columns = &mut jump.columns[j];
+        let columns = jump.columns.of(j);
         let mut place = HashMap::new();
         for (p, &i) in self.at.iter().enumerate() {
             place.insert(i as u32, p);
         }
         // Rows of a dof are numbered pair after pair, and every copy has an entry in each of them.
         let mut rows: Vec<Vec<(u32, usize)>> = vec![Vec::new(); n];
-        for (k, (&row, at)) in columns.row.iter().zip(&columns.at).enumerate() {
+        for (k, (&row, at)) in columns.row.iter().zip(columns.at).enumerate() {
             if let Some(&p) = place.get(at) {
                 rows[p].push((row, k));
             }
@@ -128,12 +141,14 @@ impl Class {
                 for (y, &at) in self.at.iter().enumerate() {
                     let value = entries.get(y, x);
                     if x == y {
-                        columns.bd[own] = value;
+                        jump.columns.set_bd(j, own, value);
                     } else if value != 0.0 {
-                        columns.row.push(row);
-                        columns.at.push(at as u32);
-                        columns.b.push(0.0);
-                        columns.bd.push(value);
+                        more.push(JumpEntry {
+                            row,
+                            at: at as u32,
+                            b: 0.0,
+                            bd: value,
+                        });
                     }
                 }
             }

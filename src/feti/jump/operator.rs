@@ -9,7 +9,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
-use super::columns::JumpColumns;
+use super::columns::{JumpEntries, JumpEntry};
 use super::coupled::slots::Slots;
 use super::coupled::MANY;
 use super::ghost_rows::GhostRows;
@@ -68,7 +68,7 @@ pub struct Jump {
     /// Where the subdomains have the entries of B_gl.
     pub(super) places: EntryPlaces,
     /// Entries by local subdomain.
-    pub columns: Vec<JumpColumns>,
+    pub columns: JumpEntries,
     /// Dual interface dofs of each local subdomain, increasing.
     pub delta: Vec<Vec<u32>>,
     /// Primal interface dofs of each local subdomain: first those shared with other subdomains of the body, then
@@ -172,8 +172,7 @@ impl Jump {
         jump.reconcile_all();
         jump.receive(problem, sharing, exchange(comm, outgoing));
         let (slots, places) = Slots::new(comm, &jump.blocks, &jump.rank_of, &jump.subdomains);
-        let columns = jump.columns.iter_mut().zip(places);
-        columns.for_each(|(columns, places)| columns.coupled = places);
+        jump.columns.couple(places);
         jump.slots = slots;
         jump
     }
@@ -228,6 +227,7 @@ impl Jump {
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
         let of_contact = entries.iter().filter(|e| e.contact).count();
         let mut places: Vec<(u32, Place)> = Vec::with_capacity(of_contact);
+        self.columns = JumpEntries::with_room(entries.len(), of_contact);
         for (k, e) in (0..).zip(&entries) {
             let row = seen.place(e.row as u32);
             dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
@@ -235,7 +235,6 @@ impl Jump {
         for (j, sub) in problem.local.iter().enumerate() {
             let mut mine = std::mem::take(&mut dealt[j]);
             mine.sort_unstable();
-            let mut columns = JumpColumns::with_room(mine.len());
             // Corners of a body with several subdomains are primal too, but not those of a solid. With ν near 1/2,
             // holding a corner makes the coarse functions stiffer than the cut that it saves.
             let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
@@ -244,9 +243,10 @@ impl Jump {
             let mut corners = Vec::new();
             for (_, row, k) in mine {
                 let e = &entries[k as usize];
+                let (at, b, bd) = (e.local, e.b, e.bd);
+                let k = self.columns.push(JumpEntry { row, at, b, bd });
                 if e.contact {
-                    let k = columns.row.len() as u32;
-                    columns.contact.push((k, e.full));
+                    self.columns.push_contact(k, e.full);
                     let (subdomain, dof) = (j as u32, e.local);
                     let place = Place {
                         subdomain,
@@ -255,10 +255,6 @@ impl Jump {
                     };
                     places.push((row, place));
                 }
-                columns.row.push(row);
-                columns.at.push(e.local);
-                columns.b.push(e.b);
-                columns.bd.push(e.bd);
                 let vertex = sharing.vertices && sub.primal.binary_search(&e.local).is_ok();
                 let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
                 if e.contact && vertex && alone && pinned {
@@ -275,10 +271,9 @@ impl Jump {
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
             dual.shrink_to_fit();
-            columns.contact.shrink_to_fit();
             self.n_shared.push(primal.len());
             primal.extend(corners);
-            self.columns.push(columns);
+            self.columns.end();
             self.delta.push(dual);
             self.primal.push(primal);
         }
@@ -298,12 +293,10 @@ impl Jump {
     pub fn place(&mut self, j: usize, interface: &[u32]) {
         let mut position: Vec<(u32, u32)> = interface.iter().copied().zip(0..).collect();
         position.sort_unstable();
-        let columns = &mut self.columns[j];
-        let coupled = columns.coupled.iter_mut().map(|c| &mut c.1);
-        for at in columns.at.iter_mut().chain(coupled) {
-            let found = position.binary_search_by_key(at, |p| p.0);
-            *at = position[found.expect("a row's dof is an interface dof")].1;
-        }
+        self.columns.renumber(j, |dof| {
+            let found = position.binary_search_by_key(&dof, |p| p.0);
+            position[found.expect("a row's dof is an interface dof")].1
+        });
     }
 }
 

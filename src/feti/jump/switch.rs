@@ -85,8 +85,8 @@ impl Jump {
                 ghost = found.expect("rows of a block are ghosts of its subdomains");
             }
             let k = self.places.entry(ghost, j as u32, entry.local);
-            self.columns[j].b[k] = entry.b;
-            self.columns[j].bd[k] = entry.bd;
+            self.columns.set_b(j, k, entry.b);
+            self.columns.set_bd(j, k, entry.bd);
         }
         rows.len()
     }

@@ -84,7 +84,7 @@ impl Certificate {
 
         let (locals, places) = (&stiffness.locals, &stiffness.space.of_subdomain);
         let examined = stiffness.team.map(locals.len(), |j| {
-            let (sub, columns) = (&problem.local[j], &jump.columns[j]);
+            let (sub, columns) = (&problem.local[j], jump.columns.of(j));
             examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
         });
         let mut sums = [0.0; 8];
@@ -180,7 +180,7 @@ struct Examined {
 fn examine(
     (sub, u): (&Subdomain, &[f64]),
     local: &Scaled,
-    (columns, ghost): (&JumpColumns, &[f64]),
+    (columns, ghost): (JumpColumns<'_>, &[f64]),
     places: &[u32],
 ) -> Examined {
     let mut sums = [0.0; 8];

@@ -230,7 +230,7 @@ impl LinearMethod {
         at.residual.r.array_mut()?[inside..].fill(0.0);
         stiffness.fetch_scaled(&at.residual.r, &mut ghost)?;
         stiffness.team.for_each(&mut at.residual.work, |j, w| {
-            columns[j].bd_transpose(&ghost, &mut w.v);
+            columns.of(j).bd_transpose(&ghost, &mut w.v);
             w.y.iter_mut().zip(&w.v).for_each(|(y, v)| *y -= v); /* z ← y − B_D,locᵀ B_loc y  */
         });
         let pairs = at.loads.g.iter().zip(&at.residual.work);

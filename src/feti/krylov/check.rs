@@ -190,7 +190,7 @@ impl Check<'_> {
         stiffness.jump_of(&work, &first)?;
         let mut ghost = stiffness.scaled_ghosts();
         stiffness.fetch_scaled(&first, &mut ghost)?;
-        for (w, columns) in work.iter_mut().zip(columns) {
+        for (w, columns) in work.iter_mut().zip(columns.iter()) {
             columns.bd_transpose(&ghost, &mut w.y);
         }
         let second = self.dual.multipliers()?;
@@ -236,7 +236,7 @@ impl Check<'_> {
         stiffness.dual_halo.fetch(&lambda, &mut ghost)?;
         let loads = g.iter().enumerate().map(|(j, g)| {
             let mut v = vec![0.0; g.len()];
-            stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
+            stiffness.jump.columns.of(j).b_transpose(&ghost, &mut v);
             v.iter_mut().zip(g).for_each(|(v, g)| *v = g - *v);
             v
         });

@@ -77,7 +77,7 @@ impl LinearMethod {
         let parts = stiffness.team.map(problem.local.len(), |j| {
             let (k, interface) = (&problem.local[j].k, &locals[j].gamma().interface);
             let mut open = vec![0.0; interface.len()];
-            columns[j].bd_transpose(&ghost, &mut open);
+            columns.of(j).bd_transpose(&ghost, &mut open);
             [
                 z[j].0.iter().zip(&z[j].1).map(|(g, z)| g * z).sum(),
                 energy(k, interface, &z[j].1),
@@ -120,7 +120,7 @@ fn correction(dual: &Dual, loads: Loads) -> Result<Vec<(Vec<f64>, Vec<f64>)>> {
     stiffness.jump_of(&at.residual.work, &at.residual.r)?;
     stiffness.fetch_scaled(&at.residual.r, &mut ghost)?;
     stiffness.team.for_each(&mut at.residual.work, |j, w| {
-        columns[j].bd_transpose(&ghost, &mut w.v);
+        columns.of(j).bd_transpose(&ghost, &mut w.v);
         w.y.iter_mut().zip(&w.v).for_each(|(y, v)| *y -= v); /* z ← y − B_Dᵀ B y          */
     });
     let z = at.residual.work.into_iter().map(|w| w.y);

@@ -120,7 +120,7 @@ pub(super) fn displacements(
     stiffness.fetch_scaled(jump, &mut ghost)?;
     let columns = &stiffness.jump.columns;
     stiffness.team.for_each(work, |j, w| {
-        columns[j].bd_transpose(&ghost, &mut w.v);
+        columns.of(j).bd_transpose(&ghost, &mut w.v);
         for (y, v) in w.y.iter_mut().zip(&w.v) {
             *y -= v;
         }

@@ -68,7 +68,7 @@ impl Averaging {
         let mut far: BTreeSet<u64> = BTreeSet::new();
         let rank_of = |c: &Copy| sharing.rank_of[c.subdomain as usize];
         for (j, (sub, local)) in problem.local.iter().zip(&stiffness.locals).enumerate() {
-            let candidate = jump.columns[j].between_bodies(local.gamma().n_gamma());
+            let candidate = jump.columns.of(j).between_bodies(local.gamma().n_gamma());
             let mut here = Vec::new();
             for (i, &at) in local.gamma().interface[..local.gamma().n_delta]
                 .iter()

@@ -69,7 +69,11 @@ pub(crate) fn recipes(
         place
     });
     let candidate: Vec<Vec<bool>> = (0..locals.len())
-        .map(|j| jump.columns[j].between_bodies(locals[j].gamma().n_gamma()))
+        .map(|j| {
+            jump.columns
+                .of(j)
+                .between_bodies(locals[j].gamma().n_gamma())
+        })
         .collect();
     // (target, (local dof of the target, row, factor)) by subdomain.
     let given = team.map(locals.len(), |j| {

@@ -98,7 +98,7 @@ impl Stiffness {
         let mut ghosts = coupling.ghosts.borrow_mut();
         ghosts.fill(0.0);
         for (j, columns) in self.jump.columns.iter().enumerate() {
-            for &(slot, at) in &columns.coupled {
+            for &(slot, at) in columns.coupled {
                 ghosts[slot as usize] += entry(j, at as usize);
             }
         }

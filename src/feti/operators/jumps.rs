@@ -10,7 +10,7 @@ impl Stiffness {
     /// out ← B y, with the displacements y in `work`. Collective.
     pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
+        for (w, columns) in work.iter().zip(self.jump.columns.iter()) {
             columns.add_b(&w.y, &mut sum);
         }
         self.dual_halo.sum(&sum, out)
@@ -19,13 +19,13 @@ impl Stiffness {
     /// out ← B y with all rows of B_gl, including those that do not hold. Collective.
     pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
+        for (w, columns) in work.iter().zip(self.jump.columns.iter()) {
             columns.add_b(&w.y, &mut sum);
         }
         for (s, contact) in sum.iter_mut().zip(&self.jump.ghost_is_contact) {
             *s = if *contact { 0.0 } else { *s };
         }
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
+        for (w, columns) in work.iter().zip(self.jump.columns.iter()) {
             columns.add_contact(&w.y, &mut sum);
         }
         self.dual_halo.sum(&sum, out)
@@ -37,7 +37,7 @@ impl Stiffness {
         let mut ghost = vec![0.0; self.jump.ghosts.len()];
         for (j, columns) in self.jump.columns.iter().enumerate() {
             let (k, interface) = (&problem.local[j].k, &self.locals[j].gamma().interface);
-            for &(place, full) in &columns.contact {
+            for &(place, full) in columns.contact {
                 let place = place as usize;
                 let dof = interface[columns.at[place] as usize] as usize;
                 ghost[columns.row[place] as usize] += full * full / k.get(dof, dof);

@@ -98,7 +98,7 @@ impl Preconditioner {
         let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
         let team = &stiffness.team;
         team.for_each(work, |j, w| {
-            columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
+            columns.of(j).bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
         });
         let lifting = self.lifting.as_ref();
         // Yᵀ v is sent while S v is computed.
@@ -116,7 +116,7 @@ impl Preconditioner {
             lifting.finish(stiffness, work, |work| self.multiply(stiffness, work))?;
         }
         ghost.clear();
-        for (w, columns) in work.iter().zip(columns) {
+        for (w, columns) in work.iter().zip(columns.iter()) {
             columns.add_bd(&w.y, ghost); /*                   out ← B_D y        */
         }
         stiffness.sum_scaled(ghost, out)
@@ -167,7 +167,7 @@ impl Preconditioner {
             stiffness.fetch_scaled(lambda, ghost)?;
             let received = &*ghost;
             stiffness.team.for_each(&mut blocks, |j, b| {
-                columns[j].bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
+                columns.of(j).bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
             });
         }
         let multiply = |blocks: &mut [Columns]| {
@@ -181,7 +181,7 @@ impl Preconditioner {
         }
         for (c, out) in outs.iter().enumerate() {
             ghost.clear();
-            let all = blocks.iter().zip(columns);
+            let all = blocks.iter().zip(columns.iter());
             for (b, columns) in all.filter(|(b, _)| !b.y.is_zero(c)) {
                 columns.add_bd(b.y.col(c), ghost); /*             out ← B_D y      */
             }

@@ -210,7 +210,7 @@ impl Stiffness {
         self.dual_halo.fetch(lambda, ghost)?;
         let columns = &self.jump.columns;
         self.team.for_each(work, |j, w| {
-            columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
+            columns.of(j).b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
         });
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of(work, out)?; /*                      out ← B y      */
@@ -232,7 +232,7 @@ impl Stiffness {
             let ghost = &*ghost;
             self.team.for_each(work, |j, w| {
                 if colour[j] == c {
-                    columns[j].b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ */
+                    columns.of(j).b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ */
                 }
             });
         }
@@ -240,7 +240,7 @@ impl Stiffness {
         for (c, out) in outs.iter().enumerate() {
             ghost.fill(0.0);
             for (j, w) in work.iter().enumerate().filter(|w| colour[w.0] == c) {
-                columns[j].add_b(&w.y, ghost); /*         out ← B y      */
+                columns.of(j).add_b(&w.y, ghost); /*         out ← B y      */
             }
             self.dual_halo.sum(ghost, out)?;
         }
@@ -267,7 +267,7 @@ impl Stiffness {
             self.dual_halo.fetch(lambda, ghost)?;
             let received = &*ghost;
             self.team.for_each(work, |j, w| {
-                columns[j].b_transpose(received, &mut w.v); /* v ← Bᵀ λ  */
+                columns.of(j).b_transpose(received, &mut w.v); /* v ← Bᵀ λ  */
             });
             change(work);
             coarse.push(self.coarse_values(work)?); /*        c ← S_Π⁺ Ψᵀ v  */
@@ -300,7 +300,7 @@ impl Stiffness {
         self.dual_halo.fetch(lambda, ghost)?;
         let columns = &self.jump.columns;
         self.team.for_each(work, |j, w| {
-            columns[j].b_transpose_all(ghost, &mut w.v); /* v ← Bᵀ λ     */
+            columns.of(j).b_transpose_all(ghost, &mut w.v); /* v ← Bᵀ λ     */
         });
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of_all(work, out) /*                    out ← B y      */
@@ -318,7 +318,7 @@ impl Stiffness {
         let mut inside = vec![0.0; contact.len()];
         let mut between = inside.clone();
         for (j, w) in work.iter_mut().enumerate() {
-            let columns = &self.jump.columns[j];
+            let columns = self.jump.columns.of(j);
             columns.bd_transpose_inside(&ghosts, contact, &mut w.y);
             self.locals[j].gamma().basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.add_b(&w.y, &mut inside); /*          inside ← B y     */

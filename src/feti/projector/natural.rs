@@ -319,8 +319,8 @@ impl NaturalCoarse {
         let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
         let largest = self.largest(comm);
         for (j, kernel) in self.kernels.iter().enumerate() {
-            let columns = &jump.columns[j];
-            for &(e, full) in &columns.contact {
+            let columns = jump.columns.of(j);
+            for &(e, full) in columns.contact {
                 let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
                 let row = jump.ghosts[ghost as usize];
                 // The last rank that starts at or before the row. A rank without rows starts where the next one does.

@@ -73,7 +73,7 @@ impl NaturalCoarse {
         let mut ghost = vec![0.0; jump.ghosts.len()];
         for (j, columns) in jump.columns.iter().enumerate() {
             let k = &problem.local[j].k;
-            for ((&row, &at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
+            for ((&row, &at), bd) in columns.row.iter().zip(columns.at).zip(columns.bd) {
                 let dof = stiffness.locals[j].gamma().interface[at as usize] as usize;
                 ghost[row as usize] += bd * bd * k.get(dof, dof);
             }
