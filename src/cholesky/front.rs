@@ -1,12 +1,14 @@
-//! The factorisation of a dense front: a panel of pivots with the rows below them, and the update of these rows.
+//! The factorisation of a dense front: a panel of pivots with the rows below them, and the update of these rows,
+//! −L₂ L₂ᵀ with L₂ the factor in these rows.
 
 use crate::linalg::dense::{self, Dense, Scratch};
 
 /// Added to the diagonal entry of a dof that is left out. Its root divides what other dofs have in common with it.
 const OUT: f64 = 1e300;
 
-/// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j is below
-/// `least`, relative to its diagonal entry. `pause` is called now and then in large fronts.
+/// Factors the pivot block, scales the rows below it and computes their update (its lower triangle; earlier entries do
+/// not count); returns `Err(j)` if pivot j is below `least`, relative to its diagonal entry. `pause` is called now and
+/// then in large fronts.
 pub(super) fn factor_front(
     panel: &mut Dense,
     update: &mut Dense,
@@ -41,8 +43,8 @@ pub(super) fn factor_front(
         let (square, rest) = strip.split_at_row_mut(n);
         let across = below.as_ref().subrows(start, n);
         let far = below.as_ref().subrows(start + n, m - start - n);
-        dense::rank_k_update(square, -1.0, across);
-        dense::multiply(rest, true, -1.0, far, across.transpose());
+        dense::rank_k_update(square, false, -1.0, across);
+        dense::multiply(rest, false, -1.0, far, across.transpose());
         pause();
     }
     Ok(())
@@ -129,12 +131,12 @@ fn factor_by_groups(
                 .view_mut()
                 .submatrix_mut(end, end, size - end, width - end);
             let (square, rest) = rest.split_at_row_mut(width - end);
-            dense::rank_k_update(square, -1.0, across.transpose());
+            dense::rank_k_update(square, true, -1.0, across.transpose());
             let below = below.subrows(width - end, size - width);
             dense::multiply(rest, true, -1.0, below, across);
         }
         let far = below.subrows(width - end, size - width);
-        dense::rank_k_update(update.view_mut(), -1.0, far);
+        dense::rank_k_update(update.view_mut(), start > 0, -1.0, far);
     }
     weak
 }

@@ -192,7 +192,7 @@ impl<'a> Elimination<'a> {
         let (width, size) = (front.width(), front.size());
         let [panel, update] = &mut self.room;
         panel.become_zero(size, width);
-        update.become_lower_zero(size - width);
+        update.become_square(size - width);
 
         for (l, &p) in front.below.iter().enumerate() {
             place[p as usize] = (width + l) as u32;
@@ -219,9 +219,7 @@ impl<'a> Elimination<'a> {
         // The order in which they are added does not depend on who has eliminated them.
         self.children[f].sort_unstable();
         for &c in &self.children[f] {
-            let child = &sym.fronts[c];
-            let left = std::mem::take(&mut self.updates[c]);
-            extend_add(panel, update, &child.into_parent, &left);
+            add_to_panel(panel, &sym.fronts[c].into_parent, &self.updates[c]);
         }
         let scratch = &mut self.scratch;
         match pivots {
@@ -235,6 +233,10 @@ impl<'a> Elimination<'a> {
                 let weak = factor_semidefinite(panel, update, &diagonal, *least, scratch, pause);
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
+        }
+        for &c in &self.children[f] {
+            let left = std::mem::take(&mut self.updates[c]);
+            add_to_update(update, width, &sym.fronts[c].into_parent, &left);
         }
         let into = &self.kept.fronts[f];
         debug_assert_eq!(into.panel, self.panels.len());
@@ -267,33 +269,41 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
     s
 }
 
-/// Adds a child's update, a lower triangle column by column, into its parent's front: a panel and an update.
-fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], mut child: &[f64]) {
+/// Adds the columns of a child's update, a lower triangle column by column, that are pivots of its parent.
+fn add_to_panel(panel: &mut Dense, map: &[u32], child: &[f64]) {
+    let inside = map.partition_point(|&i| (i as usize) < panel.cols);
+    let runs = runs(map);
+    let mut rest = child;
+    for (j, &into) in map[..inside].iter().enumerate() {
+        let (of_child, after) = rest.split_at(map.len() - j);
+        rest = after;
+        add_column(panel.col_mut(into as usize), 0, &runs, (j, of_child));
+    }
+}
+
+/// Adds the other columns, to the update of a parent with `width` pivots.
+fn add_to_update(update: &mut Dense, width: usize, map: &[u32], child: &[f64]) {
     let n = map.len();
-    let width = panel.cols;
     let inside = map.partition_point(|&i| (i as usize) < width);
     let runs = runs(map);
-    let mut first = 0;
-    for j in 0..n {
-        let target = map[j] as usize;
-        let column = match j < inside {
-            true => panel.col_mut(target),
-            false => &mut update.col_mut(target - width)[..],
-        };
-        // Rows of the update are counted from the first one below the pivots.
-        let above = if j < inside { 0 } else { width };
-        while runs[first].end <= j {
-            first += 1;
-        }
-        let (of_child, rest) = child.split_at(n - j);
-        child = rest;
-        for run in &runs[first..] {
-            let start = run.start.max(j);
-            let to = run.to + (start - run.start) - above;
-            let source = &of_child[start - j..run.end - j];
-            let sums = column[to..to + source.len()].iter_mut().zip(source);
-            sums.for_each(|(sum, v)| *sum += v);
-        }
+    let mut rest = &child[(0..inside).map(|j| n - j).sum()..];
+    for (j, &into) in map.iter().enumerate().skip(inside) {
+        let (of_child, after) = rest.split_at(n - j);
+        rest = after;
+        let column = update.col_mut(into as usize - width);
+        add_column(column, width, &runs, (j, of_child));
+    }
+}
+
+/// Adds column `j` of a child, from its diagonal entry down, to a column whose first row is row `above` of the parent.
+fn add_column(column: &mut [f64], above: usize, runs: &[Rows], (j, of_child): (usize, &[f64])) {
+    let first = runs.partition_point(|run| run.end <= j);
+    for run in &runs[first..] {
+        let start = run.start.max(j);
+        let to = run.to + (start - run.start) - above;
+        let source = &of_child[start - j..run.end - j];
+        let sums = column[to..to + source.len()].iter_mut().zip(source);
+        sums.for_each(|(sum, v)| *sum += v);
     }
 }
 

@@ -43,11 +43,10 @@ impl Dense {
         self.data.resize(rows * cols, 0.0);
     }
 
-    /// Becomes a square matrix with a lower triangle of zeros, in the memory that it has. Entries above are any.
-    pub fn become_lower_zero(&mut self, n: usize) {
+    /// Becomes a square matrix with any entries, in the memory that it has.
+    pub fn become_square(&mut self, n: usize) {
         (self.rows, self.cols) = (n, n);
         self.data.resize(n * n, 0.0);
-        (0..n).for_each(|j| self.col_mut(j)[j..].fill(0.0));
     }
 
     /// The lower triangle of the leading square, column by column.
@@ -300,12 +299,13 @@ pub fn solve_lower_transpose(l: MatRef<'_, f64>, x: MatMut<'_, f64>) {
     solve_upper_triangular_in_place(l.transpose(), x, Par::Seq);
 }
 
-/// C ← C + α A Aᵀ on the lower triangle of C.
-pub fn rank_k_update(c: MatMut<'_, f64>, alpha: f64, a: MatRef<'_, f64>) {
+/// C ← β C + α A Aᵀ on the lower triangle of C, β ∈ {0, 1}.
+pub fn rank_k_update(c: MatMut<'_, f64>, add: bool, alpha: f64, a: MatRef<'_, f64>) {
+    let beta = if add { Accum::Add } else { Accum::Replace };
     triangular_matmul(
         c,
         BlockStructure::TriangularLower,
-        Accum::Add,
+        beta,
         a,
         BlockStructure::Rectangular,
         a.transpose(),
