@@ -107,20 +107,20 @@ impl PrimalProblem {
                     .agree(solved.and_then(|()| solved_to_the_end(ksp)))?;
             }
             Solver::Own(bodies) => {
-                let rhs = p.rhs.array()?;
-                let mut parts: Vec<Vec<f64>> = bodies
-                    .iter()
-                    .map(|body| rhs[body.first..body.first + body.factor.n()].to_vec())
-                    .collect();
-                clock::timed(Phase::Primal, || {
-                    team.for_each(&mut parts, |b, x| {
-                        bodies[b].factor.solve(x);
-                    });
-                });
+                p.solution.copy_from(&p.rhs)?;
                 let mut solution = p.solution.array_mut()?;
-                for (body, x) in bodies.iter().zip(&parts) {
-                    solution[body.first..body.first + x.len()].copy_from_slice(x);
+                // The part of each body.
+                let (mut rest, mut first) = (&mut solution[..], 0);
+                let mut parts = Vec::with_capacity(bodies.len());
+                for body in bodies {
+                    let (_, from) = rest.split_at_mut(body.first - first);
+                    let (part, after) = from.split_at_mut(body.factor.n());
+                    (rest, first) = (after, body.first + part.len());
+                    parts.push(part);
                 }
+                clock::timed(Phase::Primal, || {
+                    team.for_each(&mut parts, |b, x| bodies[b].factor.solve(x));
+                });
             }
         }
         p.halo.fetch(&p.solution, values)
