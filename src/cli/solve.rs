@@ -15,7 +15,7 @@ use super::{inputs, maps, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::MethodSettings;
 use crate::mesh::deck;
-use crate::petsc::Session;
+use crate::petsc::{give_back, Session};
 use crate::report::destination::Destination;
 use crate::report::json::probes::NodePrint;
 use crate::report::json::SolveReport;
@@ -128,6 +128,7 @@ fn solve(
     session.agree(fits::solved(session, scene, &name))?;
     let start = Instant::now();
     let substructures = distribution::substructures(session, scene)?;
+    give_back(); // what reading took
     let assemble = start.elapsed().as_secs_f64();
 
     let settings = MethodSettings {
@@ -135,6 +136,7 @@ fn solve(
         ..MethodSettings::default()
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
+    give_back(); // lists of the set-up
     let place = match args.pieces {
         true => Place::EachRank,
         false => Place::FirstRank,

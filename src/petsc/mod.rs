@@ -39,7 +39,7 @@ mod watch;
 pub use citations::cite;
 pub use eps::{End, Eps, ProblemType, Settled, Which};
 pub use handle::Handle;
-pub use heap::{let_threads_allocate, Heap};
+pub use heap::{give_back, let_threads_allocate, Heap};
 pub use is::Is;
 #[cfg(feature = "cli")]
 pub(crate) use known::known;
