@@ -77,10 +77,14 @@ pub(super) fn solve(
 
 /// Loose inner problems may have misled the sets if there was no progress for this many steps and more than [`MANY`]
 /// rows are wrong.
-const MISLED: usize = 3;
+const MISLED: usize = 2;
 const MANY: usize = 8;
 
-/// Factor by which inner problems are then solved more exactly.
+/// Factor by which inner problems are then solved more exactly. With a smaller one they take iterations that save no
+/// steps.
+const LESS_MISLED: f64 = 0.1;
+
+/// Factor by which all inner problems are where the set that the augmented Lagrangian has found is to be tried.
 const EXACT: f64 = 1e-2;
 
 /// A step is solved to the end if its residual has to fall by no more than this.
@@ -222,10 +226,12 @@ impl<'a> ActiveSet<'a> {
     fn reduction(&self) -> f64 {
         let progress = &self.state.progress;
         let misled = progress.stalled(MISLED) && progress.wrong() > MANY;
-        match self.exact || misled {
-            true => EXACT * self.settings.inner_rtol,
-            false => self.settings.inner_rtol,
-        }
+        let factor = match (self.exact, misled) {
+            (true, _) => EXACT,
+            (false, true) => LESS_MISLED,
+            (false, false) => 1.0,
+        };
+        factor * self.settings.inner_rtol
     }
 
     /// The tolerance of the residual, from the displacements of the last step.
