@@ -84,7 +84,7 @@ const MANY: usize = 8;
 /// steps.
 const LESS_MISLED: f64 = 0.1;
 
-/// Factor by which all inner problems are where the set that the augmented Lagrangian has found is to be tried.
+/// The same for all inner problems of a run that tries the set which the augmented Lagrangian has found.
 const EXACT: f64 = 1e-2;
 
 /// A step is solved to the end if its residual has to fall by no more than this.
