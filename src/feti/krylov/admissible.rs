@@ -131,7 +131,7 @@ fn close(method: &LinearMethod, gaps: &[f64], u: &mut [Vec<f64>]) -> Result<()> 
     let columns = &jump.columns;
     let mut work = stiffness.work();
     stiffness.team.for_each(&mut work, |j, w| {
-        columns.of(j).bd_transpose(&ghost, &mut w.y); /*         v ← B_Dᵀ (B u − c)        */
+        columns.of(j).bd_transpose(&ghost, &mut w.y); /*      v ← B_Dᵀ (B u − c)        */
     });
     let none: Vec<Vec<f64>> = u.iter().map(|u| vec![0.0; u.len()]).collect();
     let none: Vec<&[f64]> = none.iter().map(Vec::as_slice).collect();

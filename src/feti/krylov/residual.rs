@@ -42,7 +42,7 @@ impl Residual {
         stiffness.dual_halo.fetch(lambda, &mut ghost)?;
         let columns = &stiffness.jump.columns;
         stiffness.team.for_each(&mut self.work, |j, w| {
-            columns.of(j).b_transpose(&ghost, &mut w.v); /*      v ← Bᵀ λ          */
+            columns.of(j).b_transpose(&ghost, &mut w.v); /*   v ← Bᵀ λ          */
             for (v, g) in w.v.iter_mut().zip(&loads.g[j]) {
                 *v = g - *v; /*                               v ← g − v         */
             }

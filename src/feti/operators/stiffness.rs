@@ -240,7 +240,7 @@ impl Stiffness {
         for (c, out) in outs.iter().enumerate() {
             ghost.fill(0.0);
             for (j, w) in work.iter().enumerate().filter(|w| colour[w.0] == c) {
-                columns.of(j).add_b(&w.y, ghost); /*         out ← B y      */
+                columns.of(j).add_b(&w.y, ghost); /*      out ← B y      */
             }
             self.dual_halo.sum(ghost, out)?;
         }
