@@ -12,7 +12,7 @@
 //! | [`symbolic`] | fronts, their rows, and where these stand in the parent's front |
 //! | [`multifrontal`] | factors front by front; what reaches the root is S |
 //! | `front` | factors one front, with or without pivots that vanish |
-//! | [`panel`] | how the columns of a front lie in memory |
+//! | [`panel`], `strips` | how the columns of a front lie in memory, and those of its update |
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | `null_vector` | what a semidefinite matrix maps to zero |
@@ -31,6 +31,7 @@ pub mod multifrontal;
 mod null_vector;
 pub mod panel;
 pub mod shared;
+mod strips;
 pub mod substitution;
 mod sweep;
 pub mod symbolic;

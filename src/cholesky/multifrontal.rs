@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use super::front::{factor_front, factor_semidefinite};
 use super::panel;
+use super::strips;
 use super::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{Dense, Scratch};
@@ -138,18 +139,23 @@ pub(super) struct Elimination<'a> {
     pub panels: Vec<f64>,
     /// S so far.
     s: Dense,
-    /// What fronts leave to their parents: lower triangles of the rows below, column by column, until the parents take
-    /// them.
+    /// What fronts leave to their parents: lower triangles of the rows below, in [`strips`], until the parents take
+    /// them. They may be longer than the triangle.
     updates: Vec<Vec<f64>>,
+    /// Memory of updates that parents have taken.
+    spare: Vec<Vec<f64>>,
     children: Vec<Vec<usize>>,
     place: Vec<u32>,
-    /// The panel and the update of the front that is eliminated. They keep their memory from front to front.
-    room: [Dense; 2],
+    /// The panel of the front that is eliminated. It keeps its memory from front to front.
+    room: Dense,
     scratch: Scratch,
 }
 
 impl<'a> Elimination<'a> {
     pub fn new(k: &'a Csr, sym: &'a Symbolic, kept: &'a Symbolic) -> Elimination<'a> {
+        let largest = sym.fronts.iter().map(|f| f.width() * f.size()).max();
+        let mut room = Dense::default();
+        room.data.reserve_exact(largest.unwrap_or(0));
         Elimination {
             k,
             sym,
@@ -157,26 +163,30 @@ impl<'a> Elimination<'a> {
             panels: Vec::with_capacity(kept.storage),
             s: schur_start(k, sym),
             updates: vec![Vec::new(); sym.fronts.len()],
+            spare: Vec::new(),
             children: vec![Vec::new(); sym.fronts.len()],
             place: vec![0u32; k.n()],
-            room: Default::default(),
+            room,
             scratch: Scratch::default(),
         }
     }
 
     /// Takes the update that front `f` leaves to its parent: the lower triangle, column by column.
     pub fn take(&mut self, f: usize) -> Vec<f64> {
-        let parent = self.sym.fronts[f].parent;
-        let siblings = &mut self.children[parent.expect("there is a parent")];
+        let front = &self.sym.fronts[f];
+        let siblings = &mut self.children[front.parent.expect("there is a parent")];
         siblings.retain(|&c| c != f);
-        std::mem::take(&mut self.updates[f])
+        let update = std::mem::take(&mut self.updates[f]);
+        let packed = strips::packed(&update, front.below.len());
+        self.spare.push(update);
+        packed
     }
 
-    /// Gives front `f` this update, a lower triangle, as if it had been eliminated here.
-    pub fn give(&mut self, f: usize, update: Vec<f64>) {
-        let parent = self.sym.fronts[f].parent;
-        self.children[parent.expect("there is a parent")].push(f);
-        self.updates[f] = update;
+    /// Gives front `f` this update, a lower triangle column by column, as if it had been eliminated here.
+    pub fn give(&mut self, f: usize, update: &[f64]) {
+        let front = &self.sym.fronts[f];
+        self.children[front.parent.expect("there is a parent")].push(f);
+        self.updates[f] = strips::unpacked(update, front.below.len());
     }
 
     /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the
@@ -190,9 +200,10 @@ impl<'a> Elimination<'a> {
         let (k, sym) = (self.k, self.sym);
         let (front, place) = (&sym.fronts[f], &mut self.place);
         let (width, size) = (front.width(), front.size());
-        let [panel, update] = &mut self.room;
+        let panel = &mut self.room;
         panel.become_zero(size, width);
-        update.become_square(size - width);
+        let order = size - width;
+        let mut update = room_for(&mut self.spare, strips::length(order));
 
         for (l, &p) in front.below.iter().enumerate() {
             place[p as usize] = (width + l) as u32;
@@ -224,31 +235,55 @@ impl<'a> Elimination<'a> {
         let scratch = &mut self.scratch;
         match pivots {
             Pivots::Regular => {
-                let done = factor_front(panel, update, &diagonal, SINGULAR, scratch, pause);
+                let done = factor_front(panel, &mut update, &diagonal, SINGULAR, scratch, pause);
                 done.map_err(|j| SingularInterior {
                     dof: sym.interior[front.start + j],
                 })?;
             }
             Pivots::Above(least, left) => {
-                let weak = factor_semidefinite(panel, update, &diagonal, *least, scratch, pause);
+                let weak =
+                    factor_semidefinite(panel, &mut update, &diagonal, *least, scratch, pause);
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }
         for &c in &self.children[f] {
             let left = std::mem::take(&mut self.updates[c]);
-            add_to_update(update, width, &sym.fronts[c].into_parent, &left);
+            add_to_update(
+                &mut update,
+                (width, order),
+                &sym.fronts[c].into_parent,
+                &left,
+            );
+            self.spare.push(left);
         }
         let into = &self.kept.fronts[f];
         debug_assert_eq!(into.panel, self.panels.len());
         panel::append(&panel.data, size, width, into.size(), &mut self.panels);
         match front.parent {
             Some(t) => {
-                self.updates[f] = update.lower();
+                self.updates[f] = update;
                 self.children[t].push(f);
             }
-            None => add_lower(&mut self.s, &front.into_parent, &update.data),
+            None => {
+                add_to_s(&mut self.s, &front.into_parent, &update);
+                self.spare.push(update);
+            }
         }
         Ok(())
+    }
+}
+
+/// Memory for `n` numbers, which may be longer and have any entries: of what is spare the shortest that suffices.
+fn room_for(spare: &mut Vec<Vec<f64>>, n: usize) -> Vec<f64> {
+    let suffices = (0..spare.len()).filter(|&i| spare[i].len() >= n);
+    match suffices.min_by_key(|&i| spare[i].len()) {
+        Some(i) => spare.swap_remove(i),
+        None => {
+            // The longest one makes room for it.
+            let longest = (0..spare.len()).max_by_key(|&i| spare[i].len());
+            longest.map(|i| spare.swap_remove(i));
+            vec![0.0; n]
+        }
     }
 }
 
@@ -269,29 +304,25 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
     s
 }
 
-/// Adds the columns of a child's update, a lower triangle column by column, that are pivots of its parent.
+/// Adds the columns of a child's update that are pivots of its parent.
 fn add_to_panel(panel: &mut Dense, map: &[u32], child: &[f64]) {
     let inside = map.partition_point(|&i| (i as usize) < panel.cols);
     let runs = runs(map);
-    let mut rest = child;
-    for (j, &into) in map[..inside].iter().enumerate() {
-        let (of_child, after) = rest.split_at(map.len() - j);
-        rest = after;
-        add_column(panel.col_mut(into as usize), 0, &runs, (j, of_child));
+    let columns = strips::columns(child, map.len()).enumerate();
+    for (j, of_child) in columns.take(inside) {
+        add_column(panel.col_mut(map[j] as usize), 0, &runs, (j, of_child));
     }
 }
 
-/// Adds the other columns, to the update of a parent with `width` pivots.
-fn add_to_update(update: &mut Dense, width: usize, map: &[u32], child: &[f64]) {
-    let n = map.len();
+/// Adds the other columns, to the update of a parent with `width` pivots and `order` rows below them.
+fn add_to_update(update: &mut [f64], (width, order): (usize, usize), map: &[u32], child: &[f64]) {
     let inside = map.partition_point(|&i| (i as usize) < width);
     let runs = runs(map);
-    let mut rest = &child[(0..inside).map(|j| n - j).sum()..];
-    for (j, &into) in map.iter().enumerate().skip(inside) {
-        let (of_child, after) = rest.split_at(n - j);
-        rest = after;
-        let column = update.col_mut(into as usize - width);
-        add_column(column, width, &runs, (j, of_child));
+    let columns = strips::columns(child, map.len()).enumerate();
+    for (j, of_child) in columns.skip(inside) {
+        let first = map[j] as usize;
+        let column = strips::column_mut(update, order, first - width);
+        add_column(column, first, &runs, (j, of_child));
     }
 }
 
@@ -330,12 +361,11 @@ fn runs(map: &[u32]) -> Vec<Rows> {
     runs.collect()
 }
 
-/// Adds an update (lower triangle) to S.
-fn add_lower(s: &mut Dense, map: &[u32], update: &[f64]) {
-    let n = map.len();
-    for j in 0..n {
+/// Adds an update to S.
+fn add_to_s(s: &mut Dense, map: &[u32], update: &[f64]) {
+    for (j, of_update) in strips::columns(update, map.len()).enumerate() {
         let column = s.col_mut(map[j] as usize);
-        for (&i, &v) in map[j..].iter().zip(&update[j * n + j..(j + 1) * n]) {
+        for (&i, &v) in map[j..].iter().zip(of_update) {
             column[i as usize] += v;
         }
     }

@@ -55,14 +55,27 @@ pub fn entry(i: usize, j: usize, width: usize, size: usize) -> usize {
 pub fn append(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut Vec<f64>) {
     for j in (0..width).step_by(COLUMNS) {
         let n = COLUMNS.min(width - j);
-        let mut row = j;
-        while row < size {
-            let rows = if row == j { n } else { LOT.min(size - row) };
-            for k in j..j + n {
-                out.extend_from_slice(&columns[k * stride + row..][..rows]);
+        let column = |k: usize| &columns[k * stride + j..][..size - j];
+        (j..j + n).for_each(|k| out.extend_from_slice(&column(k)[..n]));
+        if n < COLUMNS {
+            for row in (n..size - j).step_by(LOT) {
+                let rows = row..(size - j).min(row + LOT);
+                (j..j + n).for_each(|k| out.extend_from_slice(&column(k)[rows.clone()]));
             }
-            row += rows;
+            continue;
         }
+        // Whole lots have a length that the compiler knows.
+        let lots = std::array::from_fn::<_, COLUMNS, _>(|k| column(j + k)[n..].chunks_exact(LOT));
+        let rest = lots.clone().map(|of_column| of_column.remainder());
+        let [a, b, c, d] = lots;
+        for (((a, b), c), d) in a.zip(b).zip(c).zip(d) {
+            let mut lot = [[0.0; LOT]; COLUMNS];
+            for (to, from) in lot.iter_mut().zip([a, b, c, d]) {
+                to.copy_from_slice(from);
+            }
+            out.extend_from_slice(lot.as_flattened());
+        }
+        rest.iter().for_each(|rows| out.extend_from_slice(rows));
     }
 }
 

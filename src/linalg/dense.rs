@@ -43,12 +43,6 @@ impl Dense {
         self.data.resize(rows * cols, 0.0);
     }
 
-    /// Becomes a square matrix with any entries, in the memory that it has.
-    pub fn become_square(&mut self, n: usize) {
-        (self.rows, self.cols) = (n, n);
-        self.data.resize(n * n, 0.0);
-    }
-
     /// The lower triangle of the leading square, column by column.
     pub fn lower(&self) -> Vec<f64> {
         let n = self.cols;
