@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::front::{factor_front, factor_semidefinite};
 use super::panel;
-use super::strips;
+use super::strips::{self, Update};
 use super::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{Dense, Scratch};
@@ -139,9 +139,8 @@ pub(super) struct Elimination<'a> {
     pub panels: Vec<f64>,
     /// S so far.
     s: Dense,
-    /// What fronts leave to their parents: lower triangles of the rows below, in [`strips`], until the parents take
-    /// them. They may be longer than the triangle.
-    updates: Vec<Vec<f64>>,
+    /// What fronts leave to their parents: lower triangles of the rows below, until the parents take them.
+    updates: Vec<Update>,
     /// Memory of updates that parents have taken.
     spare: Vec<Vec<f64>>,
     children: Vec<Vec<usize>>,
@@ -162,7 +161,7 @@ impl<'a> Elimination<'a> {
             kept,
             panels: Vec::with_capacity(kept.storage),
             s: schur_start(k, sym),
-            updates: vec![Vec::new(); sym.fronts.len()],
+            updates: sym.fronts.iter().map(|_| Update::default()).collect(),
             spare: Vec::new(),
             children: vec![Vec::new(); sym.fronts.len()],
             place: vec![0u32; k.n()],
@@ -177,16 +176,16 @@ impl<'a> Elimination<'a> {
         let siblings = &mut self.children[front.parent.expect("there is a parent")];
         siblings.retain(|&c| c != f);
         let update = std::mem::take(&mut self.updates[f]);
-        let packed = strips::packed(&update, front.below.len());
-        self.spare.push(update);
+        let packed = update.packed(front.below.len());
+        self.spare.push(update.into_memory());
         packed
     }
 
     /// Gives front `f` this update, a lower triangle column by column, as if it had been eliminated here.
-    pub fn give(&mut self, f: usize, update: &[f64]) {
-        let front = &self.sym.fronts[f];
-        self.children[front.parent.expect("there is a parent")].push(f);
-        self.updates[f] = strips::unpacked(update, front.below.len());
+    pub fn give(&mut self, f: usize, update: Vec<f64>) {
+        let parent = self.sym.fronts[f].parent;
+        self.children[parent.expect("there is a parent")].push(f);
+        self.updates[f] = Update::Packed(update);
     }
 
     /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the
@@ -254,19 +253,20 @@ impl<'a> Elimination<'a> {
                 &sym.fronts[c].into_parent,
                 &left,
             );
-            self.spare.push(left);
+            self.spare.push(left.into_memory());
         }
         let into = &self.kept.fronts[f];
         debug_assert_eq!(into.panel, self.panels.len());
         panel::append(&panel.data, size, width, into.size(), &mut self.panels);
         match front.parent {
             Some(t) => {
-                self.updates[f] = update;
+                self.updates[f] = Update::Strips(update);
                 self.children[t].push(f);
             }
             None => {
+                let update = Update::Strips(update);
                 add_to_s(&mut self.s, &front.into_parent, &update);
-                self.spare.push(update);
+                self.spare.push(update.into_memory());
             }
         }
         Ok(())
@@ -305,24 +305,24 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
 }
 
 /// Adds the columns of a child's update that are pivots of its parent.
-fn add_to_panel(panel: &mut Dense, map: &[u32], child: &[f64]) {
+fn add_to_panel(panel: &mut Dense, map: &[u32], child: &Update) {
     let inside = map.partition_point(|&i| (i as usize) < panel.cols);
     let runs = runs(map);
-    let columns = strips::columns(child, map.len()).enumerate();
-    for (j, of_child) in columns.take(inside) {
-        add_column(panel.col_mut(map[j] as usize), 0, &runs, (j, of_child));
+    for (j, &into) in map[..inside].iter().enumerate() {
+        let of_child = child.column(map.len(), j);
+        add_column(panel.col_mut(into as usize), 0, &runs, (j, of_child));
     }
 }
 
 /// Adds the other columns, to the update of a parent with `width` pivots and `order` rows below them.
-fn add_to_update(update: &mut [f64], (width, order): (usize, usize), map: &[u32], child: &[f64]) {
+fn add_to_update(update: &mut [f64], (width, order): (usize, usize), map: &[u32], child: &Update) {
     let inside = map.partition_point(|&i| (i as usize) < width);
     let runs = runs(map);
-    let columns = strips::columns(child, map.len()).enumerate();
-    for (j, of_child) in columns.skip(inside) {
-        let first = map[j] as usize;
-        let column = strips::column_mut(update, order, first - width);
-        add_column(column, first, &runs, (j, of_child));
+    for (j, &into) in map.iter().enumerate().skip(inside) {
+        let of_child = child.column(map.len(), j);
+        let into = into as usize;
+        let column = strips::column_mut(update, order, into - width);
+        add_column(column, into, &runs, (j, of_child));
     }
 }
 
@@ -362,10 +362,10 @@ fn runs(map: &[u32]) -> Vec<Rows> {
 }
 
 /// Adds an update to S.
-fn add_to_s(s: &mut Dense, map: &[u32], update: &[f64]) {
-    for (j, of_update) in strips::columns(update, map.len()).enumerate() {
-        let column = s.col_mut(map[j] as usize);
-        for (&i, &v) in map[j..].iter().zip(of_update) {
+fn add_to_s(s: &mut Dense, map: &[u32], update: &Update) {
+    for (j, &into) in map.iter().enumerate() {
+        let column = s.col_mut(into as usize);
+        for (&i, &v) in map[j..].iter().zip(update.column(map.len(), j)) {
             column[i as usize] += v;
         }
     }

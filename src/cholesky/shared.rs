@@ -38,7 +38,7 @@ impl SharedCholesky {
             for run in &team.runs {
                 for &(child, from) in &run.children {
                     let n = rows_below(child);
-                    elimination.give(child, &received(comm, from, n * (n + 1) / 2));
+                    elimination.give(child, received(comm, from, n * (n + 1) / 2));
                 }
                 for &f in &team.own[run.fronts.clone()] {
                     let done = elimination.front(f, &mut pivots, &mut || post.progress());

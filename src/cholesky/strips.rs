@@ -57,39 +57,56 @@ pub fn length(order: usize) -> usize {
     Strip::new(order / STRIP, order).range().end
 }
 
-/// The columns of a triangle of this order, each from its diagonal entry down.
-pub fn columns(triangle: &[f64], order: usize) -> impl Iterator<Item = &[f64]> {
-    strips(order).flat_map(|strip| {
-        let all = triangle[strip.range()].chunks_exact(strip.rows);
-        all.enumerate().map(|(j, column)| &column[j..])
-    })
-}
-
 /// Column `j`, from its diagonal entry down, to write.
 pub fn column_mut(triangle: &mut [f64], order: usize, j: usize) -> &mut [f64] {
+    &mut triangle[column(order, j)]
+}
+
+fn column(order: usize, j: usize) -> Range<usize> {
     let strip = Strip::new(j / STRIP, order);
-    let inside = j - strip.start;
-    let column = &mut triangle[strip.at + inside * strip.rows..][..strip.rows];
-    &mut column[inside..]
+    let start = strip.at + (j - strip.start) * strip.rows;
+    start + j - strip.start..start + strip.rows
 }
 
-/// The triangle without the entries that nobody reads, for a message.
-pub fn packed(triangle: &[f64], order: usize) -> Vec<f64> {
-    let mut out = Vec::with_capacity(order * (order + 1) / 2);
-    columns(triangle, order).for_each(|column| out.extend_from_slice(column));
-    out
+/// An update that waits for the parent of its front. Lists may be longer than what they have.
+#[derive(Debug)]
+pub enum Update {
+    /// As its front has left it.
+    Strips(Vec<f64>),
+    /// As it goes in messages: column after column, each from its diagonal entry down.
+    Packed(Vec<f64>),
 }
 
-/// The triangle of a message.
-pub fn unpacked(packed: &[f64], order: usize) -> Vec<f64> {
-    let mut out = vec![0.0; length(order)];
-    let mut rest = packed;
-    for j in 0..order {
-        let (column, after) = rest.split_at(order - j);
-        column_mut(&mut out, order, j).copy_from_slice(column);
-        rest = after;
+impl Default for Update {
+    fn default() -> Update {
+        Update::Strips(Vec::new())
     }
-    out
+}
+
+impl Update {
+    /// Column `j`, from its diagonal entry down.
+    pub fn column(&self, order: usize, j: usize) -> &[f64] {
+        match self {
+            Update::Strips(all) => &all[column(order, j)],
+            Update::Packed(all) => {
+                let start = j * order - j * j.saturating_sub(1) / 2;
+                &all[start..start + order - j]
+            }
+        }
+    }
+
+    /// What a message has of it.
+    pub fn packed(&self, order: usize) -> Vec<f64> {
+        let mut out = Vec::with_capacity(order * (order + 1) / 2);
+        (0..order).for_each(|j| out.extend_from_slice(self.column(order, j)));
+        out
+    }
+
+    /// Its memory.
+    pub fn into_memory(self) -> Vec<f64> {
+        let (Update::Strips(all) | Update::Packed(all)) = self;
+        all
+    }
 }
 
 #[cfg(test)]
