@@ -81,7 +81,8 @@ impl NaturalCoarse {
             return Ok(());
         };
         // The second pass recovers the digits that a badly conditioned Gᵀ Q G costs.
-        for _ in 0..2 {
+        let passes = if solver.needs_no_second() { 1 } else { 2 };
+        for _ in 0..passes {
             let mut c = vec![0.0; self.r];
             self.g.add_transpose(&lambda.array()?, &mut c);
             c.iter_mut().for_each(|c| *c = -*c);

@@ -115,8 +115,8 @@ pub struct Gram {
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
-    /// Whether a sparse factor has been tried and has no small eigenvalue.
-    pub(super) regular: Cell<bool>,
+    /// The smallest eigenvalue of the scaled matrix that inverse iteration has found; zero before.
+    pub(super) smallest: Cell<f64>,
 }
 
 impl Gram {
@@ -153,7 +153,7 @@ impl Gram {
             unheld: dropped.iter().map(vector).collect(),
             dropped: dropped.iter().map(|&k| k as u32).collect(),
             factor: Factor::Dense(factor),
-            regular: Cell::new(false),
+            smallest: Cell::new(0.0),
         }
     }
 
@@ -187,7 +187,7 @@ impl Gram {
             factor: Factor::Sparse { factor, scale },
             dropped,
             unheld: alone.into_iter().map(|m| m.1).collect(),
-            regular: Cell::new(false),
+            smallest: Cell::new(0.0),
         }
     }
 
@@ -206,7 +206,7 @@ impl Gram {
             factor: Factor::Sparse { factor, scale },
             dropped: plain.dropped.clone(),
             unheld: Vec::new(),
-            regular: Cell::new(false),
+            smallest: Cell::new(0.0),
         })
     }
 
@@ -251,12 +251,12 @@ impl Gram {
         }
     }
 
-    /// Whether no eigenvalue of the matrix, scaled to a unit diagonal, is small ([`weakest`](Gram::weakest) has been
-    /// asked).
-    pub fn is_regular(&self) -> bool {
+    /// The smallest eigenvalue of the matrix, scaled to a unit diagonal, as far as it is known
+    /// ([`weakest`](Gram::weakest) finds it); zero if nobody has asked.
+    pub fn smallest_eigenvalue(&self) -> f64 {
         match &self.factor {
-            Factor::Raised(raised) => raised.base().is_regular(),
-            _ => self.regular.get(),
+            Factor::Raised(raised) => raised.smallest_eigenvalue(),
+            _ => self.smallest.get(),
         }
     }
 

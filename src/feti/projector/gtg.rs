@@ -35,6 +35,14 @@ pub enum Side {
 /// A factor is exact if a vector loses less than this on its way through the matrix and back.
 const EXACT: f64 = 1e-11;
 
+/// A solve with it leaves nothing for another one if it loses less than this.
+const WHOLE: f64 = 1e-13;
+
+/// The smallest eigenvalues, after scaling to a unit diagonal, with which GᵀG is exact, and with which a solve leaves
+/// nothing for another one: rounding is magnified by the inverse.
+const REGULAR: f64 = 1e-7;
+const STRONG: f64 = 1e-3;
+
 /// (Gᵀ Q G)⁻¹.
 pub struct Gtg {
     solver: Solver,
@@ -112,9 +120,19 @@ impl Gtg {
 
     /// Whether a factor of many columns solves to nearly all digits.
     pub fn is_exact(&self) -> bool {
+        self.loses_less(REGULAR, EXACT)
+    }
+
+    /// Whether another solve with a factor of many columns would not make a solution better.
+    pub fn needs_no_second(&self) -> bool {
+        self.loses_less(STRONG, WHOLE)
+    }
+
+    /// Whether a factor of many columns has no smaller eigenvalue, or no larger defect.
+    fn loses_less(&self, eigenvalue: f64, defect: f64) -> bool {
         match &self.solver {
-            Solver::Own => self.gram.is_regular(),
-            Solver::Weighted(factor) => factor.plain().is_some() && factor.defect <= EXACT,
+            Solver::Own => self.gram.smallest_eigenvalue() > eigenvalue,
+            Solver::Weighted(factor) => factor.plain().is_some() && factor.defect <= defect,
             Solver::Petsc(_) | Solver::Chosen(_) => false,
         }
     }

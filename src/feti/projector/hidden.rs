@@ -46,7 +46,8 @@ impl Gram {
             least = least.min(before / after);
             // What is not a number is not regular, and no motion.
             if least > REGULAR || !after.is_finite() {
-                self.regular.set(least > REGULAR);
+                self.smallest
+                    .set(if after.is_finite() { least } else { 0.0 });
                 return None;
             }
             shares.iter_mut().for_each(|x| *x /= after);

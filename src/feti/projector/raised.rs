@@ -43,6 +43,8 @@ pub struct Raised {
     shared: [Vec<Shared>; 2],
     /// W⁻¹; its rows belong to motions, its columns to rows of G.
     inverse: Dense,
+    /// The smallest pivot of W.
+    pivot: f64,
 }
 
 /// The entries of a row or of a motion at this rank's columns and at its ghosts, with their places in shares.
@@ -124,13 +126,14 @@ impl Gram {
         Some(Gram {
             dropped: left.iter().map(|&m| self.dropped[m]).collect(),
             unheld: taken.left,
-            regular: Cell::new(false),
+            smallest: Cell::new(0.0),
             factor: Factor::Raised(Box::new(Raised {
                 base: self.clone(),
                 rows,
                 motions,
                 shared,
                 inverse: taken.inverse,
+                pivot: taken.pivot,
             })),
         })
     }
@@ -140,6 +143,7 @@ impl Gram {
 struct Taken {
     of_rows: Vec<usize>,
     inverse: Dense,
+    pivot: f64,
     left: Vec<Motion>,
 }
 
@@ -153,6 +157,7 @@ impl Taken {
         });
         let mut of_rows = vec![usize::MAX; k];
         let mut taken = vec![false; n];
+        let mut smallest = 1.0f64;
         for _ in 0..k {
             let open = (0..k).filter(|&i| of_rows[i] == usize::MAX);
             let pairs = open.flat_map(|i| (0..n).map(move |m| (i, m)));
@@ -163,6 +168,7 @@ impl Taken {
             if pivot.is_nan() || pivot.abs() <= PIVOT {
                 return None;
             }
+            smallest = smallest.min(pivot.abs());
             (of_rows[i], taken[m]) = (m, true);
             for l in (0..n).filter(|&l| !taken[l]) {
                 let factor = rest.get(i, l) / pivot;
@@ -188,6 +194,7 @@ impl Taken {
         Some(Taken {
             of_rows,
             inverse,
+            pivot: smallest,
             left,
         })
     }
@@ -207,6 +214,11 @@ impl Raised {
     /// The factor of A.
     pub fn base(&self) -> &Gram {
         &self.base
+    }
+
+    /// About the smallest eigenvalue: a row does the square of its part of the work on its motion.
+    pub fn smallest_eigenvalue(&self) -> f64 {
+        self.pivot.powi(2).min(self.base.smallest_eigenvalue())
     }
 
     /// w = W⁻ᵀ Nᵀ b from Nᵀ b.
