@@ -1,5 +1,6 @@
 //! Where bodies meet: the shared nodes of all interfaces, grouped by position.
 
+use super::reach::Reach;
 use crate::linalg::union_find::UnionFind;
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
@@ -45,9 +46,9 @@ struct Found {
 const NONE: u32 = u32::MAX;
 
 impl Meeting {
-    /// Groups the shared nodes of all interfaces whose nodes match.
-    pub fn of(bodies: &[Body], interfaces: &[Interface]) -> Meeting {
-        let (mut nodes, mut sets, found) = number(bodies, interfaces);
+    /// Groups the shared nodes that are reached, of all interfaces whose nodes match.
+    pub fn of(bodies: &[Body], interfaces: &[Interface], reach: &Reach) -> Meeting {
+        let (mut nodes, mut sets, found) = number(bodies, interfaces, reach);
         // Sets in the order of their first members.
         let roots: Vec<u32> = (0..nodes.len()).map(|id| sets.find(id) as u32).collect();
         drop(sets);
@@ -123,11 +124,16 @@ impl Meeting {
     }
 }
 
-/// Numbers the shared nodes of all interfaces: the nodes by number, those that coincide in one set, and the pairs.
-fn number(bodies: &[Body], interfaces: &[Interface]) -> (Vec<BodyNode>, UnionFind, Vec<Found>) {
+/// Numbers the shared nodes that are reached: the nodes by number, those that coincide in one set, and the pairs.
+fn number(
+    bodies: &[Body],
+    interfaces: &[Interface],
+    reach: &Reach,
+) -> (Vec<BodyNode>, UnionFind, Vec<Found>) {
     let matching = || {
         let all = interfaces.iter().enumerate();
-        all.filter(|(_, i)| i.mortar.is_none() && !i.shared.is_empty())
+        let all = all.filter(|(_, i)| i.mortar.is_none() && !i.shared.is_empty());
+        all.filter(|(_, i)| reach.touches(i))
     };
     // By body the number of each node; empty for bodies without an interface.
     let mut number: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
@@ -140,7 +146,8 @@ fn number(bodies: &[Body], interfaces: &[Interface]) -> (Vec<BodyNode>, UnionFin
                 number[body] = vec![NONE; bodies[body].mesh().n_nodes()];
             }
         }
-        for (k, shared) in interface.shared.iter().enumerate() {
+        let shared = interface.shared.iter().enumerate();
+        for (k, shared) in shared.filter(|(_, s)| reach.has(interface.bodies[0], s.nodes[0])) {
             let ids = [0, 1].map(|side| {
                 let (body, node) = (interface.bodies[side], shared.nodes[side]);
                 let known = &mut number[body][node];

@@ -15,7 +15,7 @@
 //! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
 //! nodes that it means. Interfaces of sides that an entry names come from `facing`, those of faces whose nodes do not
 //! match from `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
-//! [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
+//! at the points that a rank's bodies reach (`reach`), [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
 //! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
 //! third form ([`points::PointRow::right_hand_side`]).
 
@@ -33,6 +33,7 @@ pub mod mortar;
 pub mod mortar_row;
 pub mod obstacles;
 pub mod points;
+mod reach;
 pub mod select;
 pub mod surfaces;
 pub mod table;

@@ -1,6 +1,7 @@
 //! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
 
 use super::meeting::{Meeting, Pair};
+use super::reach::Reach;
 use crate::error::{Error, Result};
 use crate::linalg::union_find::UnionFind;
 use crate::scene::body::Body;
@@ -59,16 +60,22 @@ pub struct Inequality {
     pub given: [f64; 2],
 }
 
-/// The points of a scene that satisfy `wanted`. Nodes that are tied to a given value are added to the given nodes of
-/// their body, at all points.
+/// The points of a scene that satisfy `wanted`, each of which has a node of a body that is `near`. Nodes that are tied
+/// to a given value are added to the given nodes of their body, at all points.
 pub(crate) fn collect(
     bodies: &mut [Body],
     interfaces: &[Interface],
+    near: &dyn Fn(usize) -> bool,
     wanted: &dyn Fn(&Point) -> bool,
 ) -> Result<Vec<Point>> {
     let mut out: Vec<Point> = Vec::new();
     let mut inherited = Vec::new();
-    let meeting = Meeting::of(bodies, interfaces);
+    // A given value is passed on by a tie to a body that has it.
+    let ties = (interfaces.iter()).any(|i| i.shared.iter().any(|s| s.link == Link::Tied));
+    let passes_on = |b: usize| ties && !bodies[b].prescribed.is_empty();
+    let from = (0..bodies.len()).map(|b| near(b) || passes_on(b)).collect();
+    let reach = Reach::of(from, |b| bodies[b].mesh().n_nodes(), interfaces);
+    let meeting = Meeting::of(bodies, interfaces, &reach);
     for (members, met) in meeting.sets() {
         let mut point = BodyNode::point(members.to_vec(), bodies);
         let mut pairs: Vec<Pair> = met.collect();

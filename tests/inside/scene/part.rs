@@ -124,6 +124,65 @@ fn parts_have_the_rows_of_the_whole() {
     }
 }
 
+/// Four squares around a point, with gaps between them. Entries lead from `a` to `b`, to `c` and to `d`, but not from
+/// `d` to `a`; the side of `d` on which u is given has the corner at the point.
+fn around_a_point(kind: &str) -> String {
+    let mut text = String::from("physics = \"scalar\"\n");
+    let squares = [
+        ("a", [0.0, 0.0]),
+        ("b", [1.25, 0.0]),
+        ("c", [1.25, 1.25]),
+        ("d", [0.0, 1.25]),
+    ];
+    for (name, [x, y]) in squares {
+        let held = if name == "d" {
+            "dirichlet = [\"right\"]\n"
+        } else {
+            ""
+        };
+        text += &format!("[[body]]\nname = \"{name}\"\norigin = [{x}, {y}]\nsize = [1, 1]\n");
+        text += &format!("elements = [2, 2]\nsubdomains = [2, 1]\n{held}");
+    }
+    for (bodies, sides) in [
+        (["a", "b"], ["right", "left"]),
+        (["b", "c"], ["top", "bottom"]),
+        (["d", "c"], ["right", "left"]),
+    ] {
+        text += &format!("[[{kind}]]\nbodies = {bodies:?}\nsides = {sides:?}\n");
+    }
+    text
+}
+
+#[test]
+fn points_and_given_values_are_found_by_way_of_bodies_in_between() {
+    for kind in ["tie", "contact"] {
+        let name = format!("fetifeti-{kind}-{}.toml", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::write(&path, around_a_point(kind)).expect("a file");
+        let whole = Scene::load(&path).expect("a scene");
+        let most = whole.points.iter().map(|p| p.members.len()).max();
+        assert_eq!(most, Some(4), "{kind}");
+        let given =
+            |s: &Scene| -> Vec<_> { s.bodies.iter().map(|b| b.prescribed.clone()).collect() };
+        assert_eq!(given(&whole)[0].len(), usize::from(kind == "tie"));
+        for ranks in [2, 3, 4, 8] {
+            for rank in 0..ranks {
+                let wanted = Part {
+                    cyclic: false,
+                    ranks,
+                    rank,
+                };
+                let part = Scene::load_if(&path, |_| Ok(wanted)).expect("a part");
+                let owns = wanted.owns(&whole.bodies);
+                let points = whole.points.iter().filter(|p| owns(p.subdomain));
+                assert!(part.points.iter().eq(points), "{kind}: {rank} of {ranks}");
+                assert_eq!(given(&part), given(&whole), "{kind}: {rank} of {ranks}");
+            }
+        }
+        std::fs::remove_file(&path).expect("it was there");
+    }
+}
+
 #[test]
 fn parts_know_the_interfaces_of_their_bodies_and_rows() {
     let file = "examples/scenes/arch_stands.toml";
