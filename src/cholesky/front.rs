@@ -14,8 +14,8 @@ const OUT: f64 = 1e300;
 const DEEP: usize = 128;
 
 /// Factors the pivot block, scales the rows below it and computes their update, in [`strips`](super::strips); earlier
-/// entries do not count. Returns `Err(j)` if pivot j is below `least`, relative to its diagonal entry. `pause` is called now and
-/// then in large fronts.
+/// entries do not count. Returns `Err(j)` if pivot j is below `least`, relative to its diagonal entry. `pause` is
+/// called now and then in large fronts.
 pub(super) fn factor_front(
     panel: &mut Dense,
     update: &mut [f64],

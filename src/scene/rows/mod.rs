@@ -15,9 +15,9 @@
 //! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
 //! nodes that it means. Interfaces of sides that an entry names come from `facing`, those of faces whose nodes do not
 //! match from `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
-//! at the points that a rank's bodies reach (`reach`), [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
-//! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
-//! third form ([`points::PointRow::right_hand_side`]).
+//! at the points that a rank's bodies reach (`reach`), [`table`] the fourth. Normals and distances are computed once,
+//! with the second form, and areas ([`areas`]) with the label; reports, studies and C read them in the solved row. A
+//! load step evaluates only the right-hand sides of the third form ([`points::PointRow::right_hand_side`]).
 
 pub mod all;
 pub mod areas;
