@@ -144,6 +144,14 @@ pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -
     Ok(of_rank(session, is_cyclic(session)?).owns(&scene.bodies))
 }
 
+/// For each body the ranks that own subdomains of it, according to the options.
+pub(crate) fn ranks_of<'a>(
+    session: &Session,
+    scene: &'a Scene,
+) -> Result<impl Fn(usize) -> Vec<usize> + use<'a>> {
+    Ok(of_rank(session, is_cyclic(session)?).ranks_of(&scene.bodies))
+}
+
 /// This rank's part of the scene, assembled. Collective.
 pub(crate) fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> {
     session.agree(fits::assembled(session, scene))?;

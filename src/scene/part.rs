@@ -9,6 +9,7 @@ use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
+use crate::linalg::sorted::distinct;
 use crate::mesh::contiguous_share;
 use crate::substructures::RowSource;
 
@@ -40,6 +41,21 @@ impl Part {
         match chained {
             true => Part::WHOLE,
             false => self,
+        }
+    }
+
+    /// For each body the ranks that own subdomains of it, increasing.
+    pub fn ranks_of(self, bodies: &[Body]) -> impl Fn(usize) -> Vec<usize> + use<'_> {
+        let starts = starts(bodies, self.ranks);
+        let Part { cyclic, ranks, .. } = self;
+        move |b: usize| {
+            let first = bodies[b].first_subdomain;
+            let own = first..first + bodies[b].mesh().n_subdomains();
+            let rank_of = |s: usize| match cyclic {
+                true => s % ranks,
+                false => starts[1..].partition_point(|&end| end <= s),
+            };
+            distinct(own.map(rank_of))
         }
     }
 
@@ -90,9 +106,15 @@ pub(super) fn needed(
 /// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may
 /// lie on several ranks.
 fn share(bodies: &[Body], ranks: usize, rank: usize) -> Range<usize> {
+    let starts = starts(bodies, ranks);
+    starts[rank]..starts[rank + 1]
+}
+
+/// Where the blocks of the ranks start, and the end of the last one.
+fn starts(bodies: &[Body], ranks: usize) -> Vec<usize> {
     let n = bodies.iter().map(|b| b.mesh().n_subdomains()).sum();
     if ranks == 1 || bodies.iter().all(|b| b.mesh().cells().is_none()) {
-        return contiguous_share(n, ranks, rank);
+        return by_number(n, ranks);
     }
     let works = bodies.iter().flat_map(|body| {
         let nodes = |s: usize| match body.mesh().cells() {
@@ -102,19 +124,24 @@ fn share(bodies: &[Body], ranks: usize, rank: usize) -> Range<usize> {
         let count = body.mesh().n_subdomains();
         (0..count).map(move |s| ((body.components * nodes(s)) as f64).powf(WORK))
     });
-    by_work(&works.collect::<Vec<f64>>(), ranks, rank)
+    by_work(&works.collect::<Vec<f64>>(), ranks)
 }
 
 /// The work of a subdomain grows as this power of its unknowns: solves as the power 1.2 to 1.4, factorisations as 1.5
 /// in the plane and 2 in space.
 const WORK: f64 = 1.5;
 
-/// The items of a rank if all are dealt out in contiguous blocks of about equal work. Every rank gets one if there are
-/// enough.
-fn by_work(works: &[f64], ranks: usize, rank: usize) -> Range<usize> {
+/// The starts of blocks of about equal number.
+fn by_number(n: usize, ranks: usize) -> Vec<usize> {
+    let starts = (0..ranks).map(|r| contiguous_share(n, ranks, r).start);
+    starts.chain([n]).collect()
+}
+
+/// The starts of blocks of about equal work. Every rank gets an item if there are enough.
+fn by_work(works: &[f64], ranks: usize) -> Vec<usize> {
     let n = works.len();
     if n <= ranks {
-        return contiguous_share(n, ranks, rank);
+        return by_number(n, ranks);
     }
     let total: f64 = works.iter().sum();
     // An item belongs to the block in which its middle lies.
@@ -132,7 +159,7 @@ fn by_work(works: &[f64], ranks: usize, rank: usize) -> Range<usize> {
             .partition_point(|m| *m < bound)
             .clamp(r, n - (ranks - r))
     };
-    start(rank)..start(rank + 1)
+    (0..=ranks).map(start).collect()
 }
 
 #[cfg(test)]

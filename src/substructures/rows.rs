@@ -1,8 +1,11 @@
 //! Rows of B_gl: as the problem gives them to the method, and as a solution returns them.
 
+use std::collections::HashMap;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, gather_all, Record};
 
 /// The kind of a row: an equation, or an inequality that the contact loop may switch off.
@@ -173,6 +176,32 @@ impl SolvedRow {
         let mut outgoing = vec![Vec::new(); comm.size() as usize];
         outgoing[0] = rows.to_vec();
         exchange(comm, outgoing)
+    }
+
+    /// On each rank the rows with a node of a body that it has, in order of their blocks; `ranks_of` gives the ranks
+    /// that have a body. Collective.
+    pub fn near_bodies(
+        comm: &SimpleCommunicator,
+        rows: &[SolvedRow],
+        ranks_of: impl Fn(usize) -> Vec<usize>,
+    ) -> Vec<SolvedRow> {
+        let mut outgoing = vec![Vec::new(); comm.size() as usize];
+        let mut known: HashMap<usize, Vec<usize>> = HashMap::new();
+        for row in rows {
+            let mut to: Vec<usize> = Vec::new();
+            for member in row.label.members.into_iter().flatten() {
+                let ranks = known
+                    .entry(member.body)
+                    .or_insert_with(|| ranks_of(member.body));
+                to.extend(ranks.iter());
+            }
+            distinct(to)
+                .into_iter()
+                .for_each(|r| outgoing[r].push(*row));
+        }
+        let mut rows = exchange(comm, outgoing);
+        rows.sort_by_key(|row| row.block);
+        rows
     }
 
     /// The rows of all ranks on every one, in order of their blocks. Collective.

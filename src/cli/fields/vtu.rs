@@ -7,10 +7,11 @@ use crate::cli::first_rank::on_first_rank;
 use crate::fem::cell::CellStress;
 use crate::fem::element::{principal_stresses, NodeStress};
 use crate::fem::recovery::components;
+use crate::parallel::exchange::any;
 use crate::petsc::Session;
 use crate::report::paraview::contact_fields::ContactFields;
 use crate::report::paraview::vtu::Vtu;
-use crate::scene::Scene;
+use crate::scene::{distribution, Scene};
 use crate::substructures::SolvedRow;
 use crate::{Result, Solution};
 
@@ -42,32 +43,38 @@ impl Gathered {
         name: &str,
     ) -> Result<()> {
         let path = dir.join(self.place.file(name));
+        let own = solution.rows();
+        let contact = any(session.comm(), own.iter().any(SolvedRow::is_inequality));
         if self.place == Place::FirstRank {
             return on_first_rank(session, || {
-                self.grid(scene, rows, &mut |grid| grid.write(&path))
+                self.grid(scene, (rows, contact), &mut |grid| grid.write(&path))
             });
         }
-        let rows = SolvedRow::on_all_ranks(session.comm(), solution.rows());
+        let ranks_of = distribution::ranks_of(session, scene)?;
+        let rows = SolvedRow::near_bodies(session.comm(), own, ranks_of);
         let pieces: Vec<String> = (0..session.size()).map(|r| piece(name, r)).collect();
         let mine = dir.join(&pieces[session.rank()]);
-        session.agree(self.grid(scene, &rows, &mut |grid| grid.write(&mine)))?;
+        session.agree(self.grid(scene, (&rows, contact), &mut |grid| grid.write(&mine)))?;
         // ParaView finds the index only when its pieces are there.
         on_first_rank(session, || {
             let write = &mut |grid: &Vtu| grid.write_index(&path, &pieces);
-            self.grid(scene, &rows, write)
+            self.grid(scene, (&rows, contact), write)
         })
     }
 
-    /// The grid with all its data, for `write`.
+    /// The grid with all its data, for `write`; that of contact, if there is any on any rank.
     fn grid(
         &self,
         scene: &Scene,
-        rows: &[SolvedRow],
+        (rows, contact): (&[SolvedRow], bool),
         write: &mut dyn FnMut(&Vtu) -> Result<()>,
     ) -> Result<()> {
         let whole = |list: &[u32]| list.iter().map(|&k| k as i32).collect::<Vec<i32>>();
         let [body, subdomain, rank] = [&self.body, &self.subdomain, &self.rank].map(|l| whole(l));
-        let contact = self.contact_fields(scene, rows)?;
+        let contact = match contact {
+            true => Some(self.contact_fields(scene, rows)?),
+            false => None,
+        };
         let (c, u) = self.vectors(scene);
         let mut grid = Vtu::new(&self.points, &self.cells).point_data("u", c, &u[..]);
         if let Some(contact) = &contact {
@@ -107,10 +114,7 @@ impl Gathered {
     }
 
     /// Multiplier, gap and contact at the points.
-    fn contact_fields(&self, scene: &Scene, rows: &[SolvedRow]) -> Result<Option<ContactFields>> {
-        if rows.iter().all(|r| !r.is_inequality()) {
-            return Ok(None);
-        }
+    fn contact_fields(&self, scene: &Scene, rows: &[SolvedRow]) -> Result<ContactFields> {
         let copies = self.copies(rows);
         let mut fields = ContactFields::new(self.points.len());
         if scene.has_pressure() {
@@ -127,7 +131,7 @@ impl Gathered {
             }
         }
         fields.divide();
-        Ok(Some(fields))
+        Ok(fields)
     }
 
     /// u in VTK's form: a number, or three components.

@@ -6,7 +6,8 @@ use std::path::Path;
 
 /// The blocks of all ranks.
 fn blocks(works: &[f64], ranks: usize) -> Vec<Range<usize>> {
-    (0..ranks).map(|r| by_work(works, ranks, r)).collect()
+    let starts = by_work(works, ranks);
+    starts.windows(2).map(|ends| ends[0]..ends[1]).collect()
 }
 
 #[test]
@@ -70,6 +71,33 @@ fn bodies_of_a_mesh_are_dealt_out_by_work() {
     let n = boxes.n_subdomains();
     for rank in 0..3 {
         assert_eq!(share(&boxes.bodies, 3, rank), contiguous_share(n, 3, rank));
+    }
+}
+
+#[test]
+fn ranks_of_a_body_are_those_that_own_a_subdomain_of_it() {
+    for file in [
+        "examples/gallery/roller_bearing.toml",
+        "examples/scenes/unequal_bodies.toml",
+    ] {
+        let scene = Scene::load(file).expect("a scene");
+        for (ranks, cyclic) in [(1, false), (3, false), (3, true), (40, false)] {
+            let part = |rank| Part {
+                cyclic,
+                ranks,
+                rank,
+            };
+            let owners: Vec<_> = (0..ranks).map(|r| part(r).owns(&scene.bodies)).collect();
+            let ranks_of = part(0).ranks_of(&scene.bodies);
+            for (b, body) in scene.bodies.iter().enumerate() {
+                let first = body.first_subdomain;
+                let mut own = first..first + body.mesh().n_subdomains();
+                let has = |r: &usize| own.clone().any(&owners[*r]);
+                let expected: Vec<usize> = (0..ranks).filter(has).collect();
+                assert_eq!(ranks_of(b), expected, "{file}: {b} on {ranks}");
+                assert!(own.next().is_some());
+            }
+        }
     }
 }
 
