@@ -9,7 +9,6 @@ use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
-use crate::linalg::sorted::distinct;
 use crate::mesh::contiguous_share;
 use crate::substructures::RowSource;
 
@@ -45,6 +44,7 @@ impl Part {
     }
 
     /// For each body the ranks that own subdomains of it, increasing.
+    #[cfg(feature = "cli")]
     pub fn ranks_of(self, bodies: &[Body]) -> impl Fn(usize) -> Vec<usize> + use<'_> {
         let starts = starts(bodies, self.ranks);
         let Part { cyclic, ranks, .. } = self;
@@ -55,7 +55,7 @@ impl Part {
                 true => s % ranks,
                 false => starts[1..].partition_point(|&end| end <= s),
             };
-            distinct(own.map(rank_of))
+            crate::linalg::sorted::distinct(own.map(rank_of))
         }
     }
 
