@@ -14,16 +14,13 @@ use crate::Solution;
 
 /// All rows on rank 0, ordered by interface and t; empty on the other ranks. Collective.
 pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
-    let rows = SolvedRow::on_first_rank(session.comm(), solution.rows());
-    // Rows are long: places are sorted in their stead.
-    let place = |(k, row): (usize, &SolvedRow)| (row.label.source, row.label.t, k);
-    let mut places: Vec<(RowSource, [f64; 2], usize)> =
-        rows.iter().enumerate().map(place).collect();
-    places.sort_unstable_by(|a, b| {
-        let by_t = |k: usize| a.1[k].total_cmp(&b.1[k]);
-        (a.0.cmp(&b.0).then(by_t(1)).then(by_t(0))).then(a.2.cmp(&b.2))
+    let mut rows = SolvedRow::on_first_rank(session.comm(), solution.rows());
+    rows.sort_by(|a, b| {
+        let by_t = |k: usize| a.label.t[k].total_cmp(&b.label.t[k]);
+        let by_source = a.label.source.cmp(&b.label.source);
+        by_source.then(by_t(1)).then(by_t(0))
     });
-    places.iter().map(|place| rows[place.2]).collect()
+    rows
 }
 
 pub(super) fn by_source(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]> {
