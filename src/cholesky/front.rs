@@ -10,7 +10,7 @@ use crate::linalg::dense::{self, Dense, Scratch};
 const OUT: f64 = 1e300;
 
 /// Number of columns of a panel in one product. With more of them a product reads them from memory that is further
-/// away: seven eighths of its speed.
+/// away.
 const DEEP: usize = 128;
 
 /// Factors the pivot block, scales the rows below it and computes their update, in [`strips`](super::strips); earlier

@@ -1,5 +1,7 @@
 //! A body of a checked scene.
 
+use std::ops::Range;
+
 use super::model::body::BodySpec;
 use crate::linalg::vec3::ball;
 use crate::mesh::Mesh;
@@ -26,6 +28,11 @@ impl Body {
     /// Its mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.spec.mesh
+    }
+
+    /// The numbers of its subdomains in the scene.
+    pub(super) fn subdomains(&self) -> Range<usize> {
+        self.first_subdomain..self.first_subdomain + self.mesh().n_subdomains()
     }
 
     /// Centre and radius of the ball around its [`Body::bounds`].

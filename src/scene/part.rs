@@ -49,13 +49,11 @@ impl Part {
         let starts = starts(bodies, self.ranks);
         let Part { cyclic, ranks, .. } = self;
         move |b: usize| {
-            let first = bodies[b].first_subdomain;
-            let own = first..first + bodies[b].mesh().n_subdomains();
             let rank_of = |s: usize| match cyclic {
                 true => s % ranks,
                 false => starts[1..].partition_point(|&end| end <= s),
             };
-            crate::linalg::sorted::distinct(own.map(rank_of))
+            crate::linalg::sorted::distinct(bodies[b].subdomains().map(rank_of))
         }
     }
 
@@ -83,10 +81,7 @@ pub(super) fn needed(
     part: Part,
 ) -> Interfaces {
     let owns = part.owns(bodies);
-    let own = |body: &usize| {
-        let first = bodies[*body].first_subdomain;
-        (first..first + bodies[*body].mesh().n_subdomains()).any(&owns)
-    };
+    let own = |body: &usize| bodies[*body].subdomains().any(&owns);
     let rows = points.iter().flat_map(|p| &p.rows);
     let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
     let needs = |k: usize, interface: &Interface| {

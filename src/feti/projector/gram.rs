@@ -115,7 +115,7 @@ pub struct Gram {
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
-    /// The smallest eigenvalue of the scaled matrix that inverse iteration has found; zero before.
+    /// What inverse iteration says of the smallest eigenvalue of the scaled matrix; zero before, and where it is tiny.
     pub(super) smallest: Cell<f64>,
 }
 
@@ -251,8 +251,8 @@ impl Gram {
         }
     }
 
-    /// The smallest eigenvalue of the matrix, scaled to a unit diagonal, as far as it is known
-    /// ([`weakest`](Gram::weakest) finds it); zero if nobody has asked.
+    /// About the smallest eigenvalue of the matrix, scaled to a unit diagonal; zero where it is tiny, or unknown because
+    /// [`weakest`](Gram::weakest) has not been asked.
     pub fn smallest_eigenvalue(&self) -> f64 {
         match &self.factor {
             Factor::Raised(raised) => raised.smallest_eigenvalue(),

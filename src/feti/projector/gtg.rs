@@ -12,6 +12,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::distributed::{Distributed, Work};
 use super::gram::{scale_to_unit_diagonal, Gram};
+use super::hidden::REGULAR;
 use super::refined::{probe, Refined};
 use super::rows::Rows;
 use super::shape::Shape;
@@ -38,9 +39,8 @@ const EXACT: f64 = 1e-11;
 /// A solve with it leaves nothing for another one if it loses less than this.
 const WHOLE: f64 = 1e-13;
 
-/// The smallest eigenvalues, after scaling to a unit diagonal, with which GᵀG is exact, and with which a solve leaves
-/// nothing for another one: rounding is magnified by the inverse.
-const REGULAR: f64 = 1e-7;
+/// The smallest eigenvalue of GᵀG, after scaling to a unit diagonal, with which a solve leaves nothing for another one:
+/// rounding is magnified by the inverse.
 const STRONG: f64 = 1e-3;
 
 /// (Gᵀ Q G)⁻¹.

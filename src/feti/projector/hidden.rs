@@ -14,7 +14,7 @@ const STEPS: usize = 3;
 
 /// If a step magnifies by less than the inverse of this, the matrix is regular: of a null vector that is magnified by
 /// 1e13 and more the start would have less than 1e-6.
-const REGULAR: f64 = 1e-7;
+pub(super) const REGULAR: f64 = 1e-7;
 
 /// The smallest eigenvalue of the matrix, scaled to a unit diagonal, that may be rounding. Slender stacks of bodies
 /// have small ones of their own, so that the motion has to be tried on the rows.

@@ -50,13 +50,9 @@ impl Joined<'_> {
         let wanted = |p: &Point| {
             (self.owns)(p.subdomain) || p.members.iter().any(|m| beside.contains(&m.body))
         };
-        let near: Vec<bool> = (bodies.iter().enumerate())
-            .map(|(b, body)| {
-                let first = body.first_subdomain;
-                let mut own = first..first + body.mesh().n_subdomains();
-                beside.contains(&b) || own.any(self.owns)
-            })
-            .collect();
+        let near =
+            |(b, body): (usize, &Body)| beside.contains(&b) || body.subdomains().any(self.owns);
+        let near: Vec<bool> = bodies.iter().enumerate().map(near).collect();
         let mut points = points::collect(bodies, self.interfaces, &|b| near[b], &wanted)?;
         let mut checks = Checks::new(bodies, self.obstacles, spec, steps);
         if let Some(step) = step {
