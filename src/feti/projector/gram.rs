@@ -26,6 +26,10 @@ const NOTHING: f64 = 1e-13;
 /// … and of solves with many columns.
 pub(super) const NOTHING_SOLVED: f64 = 1e-10;
 
+/// If a step of inverse iteration magnifies by less than the inverse of this, the matrix is regular: of a null vector
+/// that is magnified by 1e13 and more the start would have less than 1e-6.
+pub(super) const REGULAR: f64 = 1e-7;
+
 /// The smallest pivot of a weighted product, relative to its diagonal entry. Below it a factor has less than three
 /// digits.
 const WEIGHTED: f64 = 1e-13;
@@ -251,8 +255,8 @@ impl Gram {
         }
     }
 
-    /// About the smallest eigenvalue of the matrix, scaled to a unit diagonal; zero where it is tiny, or unknown because
-    /// [`weakest`](Gram::weakest) has not been asked.
+    /// About the smallest eigenvalue of the matrix, scaled to a unit diagonal. Zero where it is tiny, or not known
+    /// because [`weakest`](Gram::weakest) has not been asked.
     pub fn smallest_eigenvalue(&self) -> f64 {
         match &self.factor {
             Factor::Raised(raised) => raised.smallest_eigenvalue(),

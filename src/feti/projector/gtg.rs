@@ -11,8 +11,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::distributed::{Distributed, Work};
-use super::gram::{scale_to_unit_diagonal, Gram};
-use super::hidden::REGULAR;
+use super::gram::{scale_to_unit_diagonal, Gram, REGULAR};
 use super::refined::{probe, Refined};
 use super::rows::Rows;
 use super::shape::Shape;

@@ -5,16 +5,12 @@
 //! slides under a last one which it lifts a little. Inverse iteration finds the vector; mostly a single solve tells
 //! that there is none.
 
-use super::gram::{Factor, Gram, Motion, NOTHING_SOLVED};
+use super::gram::{Factor, Gram, Motion, NOTHING_SOLVED, REGULAR};
 use super::refined::probe;
 use crate::parallel::exchange::sum_all;
 
 /// Steps of inverse iteration.
 const STEPS: usize = 3;
-
-/// If a step magnifies by less than the inverse of this, the matrix is regular: of a null vector that is magnified by
-/// 1e13 and more the start would have less than 1e-6.
-pub(super) const REGULAR: f64 = 1e-7;
 
 /// The smallest eigenvalue of the matrix, scaled to a unit diagonal, that may be rounding. Slender stacks of bodies
 /// have small ones of their own, so that the motion has to be tried on the rows.
