@@ -72,13 +72,15 @@ pub(super) fn bodies(
     if session.rank() > 0 {
         return Ok(Vec::new());
     }
-    let floating = &solver.dual().stiffness.space.defect;
+    let columns = &solver.dual().natural.columns;
     let axial = scene.form.is_axial();
-    let each = scene.bodies.iter().zip(&sums).zip(floating);
-    let balance = |((body, sums), &defect): ((&Body, &Sums), &usize)| match scene.form.is_elastic()
-    {
-        true => elastic(body, sums, defect > 0, axial),
-        false => scalar(body, sums, defect > 0),
+    let each = scene.bodies.iter().zip(&sums).enumerate();
+    let balance = |(b, (body, sums)): (usize, (&Body, &Sums))| {
+        let floats = !columns.of(b).is_empty();
+        match scene.form.is_elastic() {
+            true => elastic(body, sums, floats, axial),
+            false => scalar(body, sums, floats),
+        }
     };
     Ok(each.map(balance).collect())
 }

@@ -115,7 +115,7 @@ pub fn pushed_away(
     if left <= tolerance {
         return Ok(());
     }
-    let who = moving(problem, &dual.stiffness.space.kernel_start, rest);
+    let who = moving(problem, &dual.natural.columns, rest);
     Err(Error::input(format!(
         "{who} pushed away for ever: the load does not balance and no Dirichlet side, tie, \
          contact or obstacle stands against it (resultant {left:.6e} in the direction of the motion), \

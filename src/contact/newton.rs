@@ -100,7 +100,7 @@ impl<'a> Search<'a> {
         let mut at = Iterate::new(&dual, loads)?;
         if state.reference == 0.0 {
             motion::check_few(&method.problem, &dual, &at.loads.kernel)?;
-            natural.check_held(&method.problem, stiffness, &at.loads.kernel)?;
+            natural.check_held(&method.problem, &at.loads.kernel)?;
             at.begin(&dual)?;
             state.reference = at.evaluate_projected(&dual)?;
         }

@@ -77,7 +77,7 @@ impl Facts {
             multipliers_global: jump.n_global - jump.n_local,
             multipliers_active: counts[0] as usize,
             inequalities: counts[1] as usize,
-            floating_bodies: stiffness.space.defect.iter().filter(|d| **d > 0).count(),
+            floating_bodies: natural.columns.floating(),
             kernel_dimension: natural.r,
             primal: stiffness.space.n_global,
             kinds: kinds.len(),

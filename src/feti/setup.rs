@@ -9,8 +9,8 @@ use mpi::traits::Communicator;
 use super::adaptive::{constrain::constrain, constraints};
 use super::cost::{choice, variation};
 use super::facts::Facts;
-use super::interface::entities;
 use super::interface::sharing::Sharing;
+use super::interface::{entities, location};
 use super::jump::deluxe;
 use super::jump::operator::Jump;
 use super::jump::weights::weights;
@@ -73,6 +73,7 @@ impl LinearMethod {
         let clock = Instant::now();
         let comm = session.comm();
         session.agree(entities::check(&problem, settings.primal))?;
+        session.agree(location::check(comm, &problem))?;
         let scaling = settings
             .scaling
             .unwrap_or_else(|| choice::scaling(&problem));

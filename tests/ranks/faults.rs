@@ -341,3 +341,49 @@ fn no_memory_in_a_factorisation_is_one_sentence() {
         assert!(!out.stderr.contains("Signal:"), "{}", out.all());
     }
 }
+
+/// No rank has a list of all subdomains: whichever rank finds the mistake, all of them say the same.
+#[test]
+fn wrong_numbers_of_subdomains_and_bodies_are_named() {
+    let ranks = as_rank(|session, case| {
+        let (size, rank) = (session.size(), session.rank());
+        let text = "[grid]\nbodies = 2\nsubdomains = 2\nelements_per_subdomain = 2\nload = \"1\"\n\
+                    dirichlet = [\"left\"]\n";
+        let scene = Scene::parse("scene.toml", text)?;
+        let mut problem = scene.substructures(&|s| s % size == rank)?;
+        for sub in &mut problem.local {
+            match (case, sub.index) {
+                ("twice", 7) => sub.index = 4,
+                ("above", 7) => sub.index = 16,
+                ("body", 7) => sub.body = 4,
+                _ => {}
+            }
+        }
+        if case == "missing" {
+            problem.local.retain(|sub| sub.index != 7);
+        }
+        FetiFeti::new(session, problem, MethodSettings::default()).map(|_| ())
+    });
+    let cases = [
+        ("right", ""),
+        (
+            "twice",
+            "subdomain index 4 is used twice or is not below 16",
+        ),
+        (
+            "above",
+            "subdomain index 16 is used twice or is not below 16",
+        ),
+        ("body", "subdomain 7 names body 4, but there are 4 bodies"),
+        ("missing", "no rank holds subdomain 7"),
+    ];
+    for n in RANKS {
+        for (case, sentence) in cases {
+            let out = ranks.run(n, case);
+            match sentence {
+                "" => assert_eq!(out.code, 0, "{}", out.all()),
+                _ => said(&out, 2, &[sentence]),
+            }
+        }
+    }
+}

@@ -198,7 +198,7 @@ impl<'a> ActiveSet<'a> {
         method.set_active(&all)?;
         let dual = method.dual();
         dual.natural
-            .check_held(&method.problem, &dual.stiffness, &self.at.loads.kernel)?;
+            .check_held(&method.problem, &self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
         self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)

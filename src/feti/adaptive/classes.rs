@@ -89,7 +89,7 @@ pub fn rough(
             let dofs = class.at.iter().map(|&i| locals[j].gamma().interface[i]);
             if varies(&problem.local[j], &stiff, dofs) {
                 for &to in &class.sharers {
-                    outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
+                    outgoing[sharing.locations.rank(to)].push(class.name());
                 }
             }
         }

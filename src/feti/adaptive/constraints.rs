@@ -62,13 +62,13 @@ pub fn find(
         classes::collect_entries(jump, j, locals[j].gamma().n_gamma(), list);
     }
     // Each sharer sends its part to the rank of the lowest sharer.
-    let rank = comm.rank() as u32;
-    let rank_of = |s: u32| sharing.rank_of[s as usize];
+    let rank = comm.rank() as usize;
+    let rank_of = |s: u32| sharing.locations.rank(s);
     let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, list) in classes.iter().enumerate() {
         for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
-            let words = &mut outgoing[rank_of(class.sharers[0]) as usize];
+            let words = &mut outgoing[rank_of(class.sharers[0])];
             words.extend([class.name(), problem.local[j].index as u64]);
             pack(&part(j, class), words);
         }
@@ -133,7 +133,7 @@ pub fn find(
     for ((j, class), list) in owned.iter().zip(found) {
         per_body[problem.local[*j].body] += list.len() as f64;
         for &to in class.sharers.iter().filter(|_| !list.is_empty()) {
-            let words = &mut outgoing[rank_of(to) as usize];
+            let words = &mut outgoing[rank_of(to)];
             words.extend([u64::from(to), class.name(), list.len() as u64]);
             words.extend(list.iter().flatten().map(|v| v.to_bits()));
         }

@@ -4,8 +4,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::{choice, forms};
-use crate::feti::interface::entities;
 use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::{entities, location};
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::kernel;
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
@@ -57,6 +57,7 @@ impl Sizes {
         constraints: Primal,
     ) -> Result<Sizes> {
         entities::check(problem, constraints)?;
+        location::check(comm, problem)?;
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);

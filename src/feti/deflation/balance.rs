@@ -12,6 +12,7 @@
 
 use super::pencil::Pencil;
 use crate::feti::operators::dual::Dual;
+use crate::feti::projector::columns::KernelColumns;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
@@ -27,8 +28,8 @@ pub struct Balance {
     body: Vec<usize>,
     /// R_iᵀ f_i of every body, factored; `None` for bodies that do not float.
     e: Vec<Option<Semidefinite>>,
-    /// First kernel column of every body, and the end.
-    start: Vec<usize>,
+    /// The kernel columns of every body.
+    columns: KernelColumns,
 }
 
 impl Balance {
@@ -38,14 +39,14 @@ impl Balance {
             f: vec![Dense::default(); dual.stiffness.locals.len()],
             body: bodies.to_vec(),
             e: (0..n_bodies).map(|_| None).collect(),
-            start: dual.stiffness.space.kernel_start.clone(),
+            columns: dual.natural.columns.clone(),
         }
     }
 
     /// Computes f_i of all bodies. Collective.
     pub fn take(&mut self, dual: &Dual, pencil: &Pencil) -> Result<()> {
         let stiffness = &dual.stiffness;
-        let defect = |b: usize| self.start[b + 1] - self.start[b];
+        let defect = |b: usize| self.columns.of(b).len();
         let most = pencil.bodies.iter().map(|&b| defect(b as usize)).max();
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         let mut v = Vec::new();
@@ -89,12 +90,12 @@ impl Balance {
             }
             let mut load = vec![0.0; natural.r];
             for (j, w) in work.iter().enumerate() {
-                let range = self.start[self.body[j]]..self.start[self.body[j] + 1];
+                let range = self.columns.of(self.body[j]);
                 natural.kernels[j].add_mul_transpose(&w.v, &mut load[range]);
             }
             sum_all(dual.comm(), &mut load);
             for (b, e) in self.e.iter().enumerate() {
-                let part = &mut load[self.start[b]..self.start[b + 1]];
+                let part = &mut load[self.columns.of(b)];
                 match e {
                     Some(e) => e.solve(part),
                     None => part.fill(0.0),
@@ -102,7 +103,7 @@ impl Balance {
             }
             load.iter_mut().for_each(|l| *l = -*l);
             for (j, w) in work.iter_mut().enumerate() {
-                let range = self.start[self.body[j]]..self.start[self.body[j] + 1];
+                let range = self.columns.of(self.body[j]);
                 if self.f[j].cols > 0 {
                     self.f[j].add_mul(&load[range], &mut w.v);
                 }

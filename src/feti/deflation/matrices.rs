@@ -82,7 +82,7 @@ impl Matrices {
         let (mut qg, mut fqg) = Default::default();
         if r > 0 && k > 0 {
             let natural = &dual.natural;
-            let start = &dual.stiffness.space.kernel_start;
+            let start = natural.columns.start();
             let near = |b: usize| graph.near[b].clone();
             let g = Panels::new(&sweep::kernel_columns(&natural.g, start, near));
             g.add_product(&w, &mut x, (0, 0));

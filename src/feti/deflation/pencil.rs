@@ -108,8 +108,7 @@ impl<'a> Pencil<'a> {
     }
 
     fn kernels(&self) -> Result<Option<Kernel>> {
-        let start = &self.dual.stiffness.space.kernel_start;
-        let of = |b: &u32| start[*b as usize]..start[*b as usize + 1];
+        let of = |b: &u32| self.dual.natural.columns.of(*b as usize);
         let most = self.bodies.iter().map(|b| of(b).len()).max().unwrap_or(0);
         if most == 0 {
             return Ok(None);

@@ -2,4 +2,5 @@
 
 pub mod candidates;
 pub mod entities;
+pub mod location;
 pub mod sharing;

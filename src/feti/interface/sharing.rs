@@ -6,12 +6,14 @@
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use rustc_hash::FxHashMap;
 
 use super::candidates::{candidates, DofMap};
 use super::entities::{self, Average};
+use super::location::{homes, Home, Location, Locations};
 use crate::feti::settings::Primal;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange, exchange_words, gather_all, Record};
+use crate::parallel::exchange::{exchange, exchange_words, Record};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
@@ -28,7 +30,7 @@ pub struct Copy {
     pub weight: f64,
 }
 
-/// The copies of the dofs that this rank needs, and the rank of every subdomain.
+/// The copies of the dofs that this rank needs, and where the subdomains are that have them.
 #[derive(Debug, Default)]
 pub struct Sharing {
     /// Copies, by increasing subdomain, of two sets of dofs: those that a subdomain of this rank shares with another
@@ -36,36 +38,54 @@ pub struct Sharing {
     pub copies: DofMap<Vec<Copy>>,
     /// For each local subdomain, the local dofs that it shares with others, increasing.
     pub shared_dofs: Vec<Vec<u32>>,
-    /// Rank that holds each subdomain; length n_subdomains.
-    pub rank_of: Vec<u32>,
-    /// Body of each subdomain; length n_subdomains.
-    pub body_of: Vec<u32>,
+    /// Where the subdomains of this rank and those with these copies are.
+    pub locations: Locations,
+    /// What this rank knows of the bodies of its subdomains.
+    pub homes: FxHashMap<usize, Home>,
     /// The averages that are primal in each local subdomain.
     pub averages: Vec<Vec<Average>>,
     /// Whether vertices are primal.
     pub vertices: bool,
 }
 
-impl Record for (u64, Copy) {
+/// A copy of a dof, and where its subdomain is.
+#[derive(Debug, Clone, Copy)]
+struct Report {
+    dof: u64,
+    copy: Copy,
+    at: Location,
+}
+
+impl Record for Report {
     const WORDS: usize = 4;
     fn pack(&self, out: &mut Vec<u64>) {
-        let (dof, c) = self;
-        let flag = u64::from(c.primal) << 63;
+        let both = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
+        let Report { dof, copy: c, at } = self;
+        // MPI numbers ranks by ints, so the highest bit is free.
+        let rank = u32::from(c.primal) << 31 | at.rank;
         out.extend([
             *dof,
-            flag | u64::from(c.subdomain),
-            u64::from(c.local),
+            both(rank, c.subdomain),
+            both(at.body, c.local),
             c.weight.to_bits(),
         ]);
     }
     fn unpack(w: &[u64]) -> Self {
         let copy = Copy {
-            subdomain: (w[1] & u64::from(u32::MAX)) as u32,
+            subdomain: w[1] as u32,
             local: w[2] as u32,
             primal: w[1] >> 63 == 1,
             weight: f64::from_bits(w[3]),
         };
-        (w[0], copy)
+        let at = Location {
+            rank: (w[1] >> 32) as u32 & i32::MAX as u32,
+            body: (w[2] >> 32) as u32,
+        };
+        Report {
+            dof: w[0],
+            copy,
+            at,
+        }
     }
 }
 
@@ -80,12 +100,14 @@ impl Sharing {
     ) -> Result<Sharing> {
         let size = comm.size() as usize;
         let home = |dof: u64| (dof % size as u64) as usize;
-        let (rank_of, body_of) = locate(comm, problem)?;
-
-        let mut reports: Vec<Vec<(u64, Copy)>> = vec![Vec::new(); size];
+        let mut reports: Vec<Vec<Report>> = vec![Vec::new(); size];
         let possible = candidates(comm, problem, &home);
         for ((sub, weight), possible) in problem.local.iter().zip(weights).zip(&possible) {
             let mut primal = vec![false; sub.dofs.len()];
+            let at = Location {
+                rank: comm.rank() as u32,
+                body: sub.body as u32,
+            };
             if constraints.vertices {
                 sub.primal.iter().for_each(|&i| primal[i as usize] = true);
             }
@@ -97,18 +119,18 @@ impl Sharing {
                     primal: primal[i],
                     weight: weight[i],
                 };
-                reports[home(dof)].push((dof, copy));
+                reports[home(dof)].push(Report { dof, copy, at });
             }
         }
-        let mut all: Vec<(u64, Copy)> = exchange(comm, reports);
-        all.sort_unstable_by_key(|(dof, c)| (*dof, c.subdomain, c.local));
+        let mut all: Vec<Report> = exchange(comm, reports);
+        all.sort_unstable_by_key(|r| (r.dof, r.copy.subdomain, r.copy.local));
 
         // Shared dofs go back to all ranks that hold a copy.
-        let mut replies: Vec<Vec<(u64, Copy)>> = vec![Vec::new(); size];
+        let mut replies: Vec<Vec<Report>> = vec![Vec::new(); size];
         let mut ranks = Vec::new();
-        for group in all.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
+        for group in all.chunk_by(|a, b| a.dof == b.dof).filter(|g| g.len() > 1) {
             ranks.clear();
-            ranks.extend(group.iter().map(|(_, c)| rank_of[c.subdomain as usize]));
+            ranks.extend(group.iter().map(|r| r.at.rank));
             ranks.sort_unstable();
             ranks.dedup();
             for &r in &ranks {
@@ -118,8 +140,8 @@ impl Sharing {
         let mut sharing = Sharing {
             copies: DofMap::default(),
             shared_dofs: Vec::new(),
-            rank_of,
-            body_of,
+            locations: Locations::own(comm, problem),
+            homes: homes(comm, problem),
             averages: Vec::new(),
             vertices: constraints.vertices,
         };
@@ -139,12 +161,15 @@ impl Sharing {
             list.retain(|dof| !sharing.copies.contains_key(dof));
             list
         });
-        let answers: Vec<Vec<(u64, Copy)>> = exchange_words(comm, queries.collect())
+        let answers: Vec<Vec<Report>> = exchange_words(comm, queries.collect())
             .iter()
             .map(|asked| {
                 let find = |&dof: &u64| {
-                    let start = all.partition_point(|e| e.0 < dof);
-                    all[start..].iter().copied().take_while(move |e| e.0 == dof)
+                    let start = all.partition_point(|e| e.dof < dof);
+                    all[start..]
+                        .iter()
+                        .copied()
+                        .take_while(move |e| e.dof == dof)
                 };
                 asked.iter().flat_map(find).collect()
             })
@@ -162,10 +187,14 @@ impl Sharing {
         Ok(sharing)
     }
 
-    fn absorb(&mut self, list: Vec<(u64, Copy)>) {
-        for group in list.chunk_by(|a, b| a.0 == b.0) {
-            let copies = group.iter().map(|(_, c)| *c).collect();
-            self.copies.insert(group[0].0, copies);
+    fn absorb(&mut self, list: Vec<Report>) {
+        for group in list.chunk_by(|a, b| a.dof == b.dof) {
+            let note = |r: &Report| {
+                self.locations.insert(r.copy.subdomain, r.at);
+                r.copy
+            };
+            let copies = group.iter().map(note).collect();
+            self.copies.insert(group[0].dof, copies);
         }
     }
 
@@ -182,9 +211,14 @@ impl Sharing {
         copies.len() > 1 && copies.iter().any(|c| c.primal)
     }
 
+    /// The body of the subdomain that has a copy.
+    pub fn body(&self, copy: &Copy) -> u32 {
+        self.locations.of(copy.subdomain).body
+    }
+
     fn check(&self, problem: &Substructures) -> Result<()> {
         for (dof, copies) in &self.copies {
-            let body = |c: &Copy| self.body_of[c.subdomain as usize];
+            let body = |c: &Copy| self.body(c);
             if let Some(c) = copies.iter().find(|c| body(c) != body(&copies[0])) {
                 return Err(Error::input(format!(
                     "body dof {dof} is listed by subdomain {} of body \"{}\" \
@@ -212,39 +246,5 @@ impl Sharing {
             }
         }
         Ok(())
-    }
-}
-
-/// (rank, body) of every subdomain. Collective.
-fn locate(comm: &SimpleCommunicator, problem: &Substructures) -> Result<(Vec<u32>, Vec<u32>)> {
-    let mine: Vec<u64> = problem
-        .local
-        .iter()
-        .flat_map(|s| [s.index as u64, s.body as u64])
-        .collect();
-    let mut rank_of = vec![u32::MAX; problem.n_subdomains];
-    let mut body_of = vec![0; problem.n_subdomains];
-    for (rank, words) in gather_all(comm, &mine).iter().enumerate() {
-        for pair in words.chunks_exact(2) {
-            let (index, body) = (pair[0] as usize, pair[1] as usize);
-            if index >= rank_of.len() || rank_of[index] != u32::MAX {
-                return Err(Error::input(format!(
-                    "subdomain index {index} is used twice or is not below {}",
-                    problem.n_subdomains
-                )));
-            }
-            if body >= problem.n_bodies {
-                return Err(Error::input(format!(
-                    "subdomain {index} names body {body}, but there are {} bodies",
-                    problem.n_bodies
-                )));
-            }
-            rank_of[index] = rank as u32;
-            body_of[index] = body as u32;
-        }
-    }
-    match rank_of.iter().position(|&r| r == u32::MAX) {
-        Some(missing) => Err(Error::input(format!("no rank holds subdomain {missing}"))),
-        None => Ok((rank_of, body_of)),
     }
 }

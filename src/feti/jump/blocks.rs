@@ -331,7 +331,7 @@ fn weighed(dofs: &[u64], sharing: &Sharing) -> (Box<[Dof]>, Box<[Copy]>) {
     let copies: Box<[Copy]> = lists.clone().flatten().copied().collect();
     // The fewest copies of a dof of each body.
     let mut fewest: FxHashMap<u32, usize> = FxHashMap::default();
-    let body = |list: &[Copy]| sharing.body_of[list[0].subdomain as usize];
+    let body = |list: &[Copy]| sharing.body(&list[0]);
     let most = lists.clone().map(Vec::len).max();
     let same = lists.clone().all(|list| Some(list.len()) == most);
     for list in lists.clone().filter(|_| !same) {

@@ -46,7 +46,7 @@ pub fn apply(
         for group in &groups[j] {
             let s = locals[j].s_on(&group.at);
             for &to in &group.sharers {
-                let list = &mut outgoing[sharing.rank_of[to as usize] as usize];
+                let list = &mut outgoing[sharing.locations.rank(to)];
                 list.extend([
                     u64::from(to),
                     sub.index as u64,

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use rustc_hash::FxHashMap;
 
 use super::blocks::{self, Block, Entry};
 use super::columns::{JumpEntries, JumpEntry};
@@ -16,6 +17,7 @@ use super::ghost_rows::GhostRows;
 use super::places::{EntryPlaces, Place};
 use super::scaling;
 use crate::feti::interface::entities::Average;
+use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::parallel::exchange::{exchange, offsets, total};
 use crate::substructures::{RowKind, Substructures};
@@ -61,8 +63,8 @@ pub struct Jump {
     /// First owned local row of each local subdomain, and the end. A subdomain has the rows of the dofs in which it is
     /// the lowest subdomain.
     pub local_start: Vec<usize>,
-    /// Rank that holds each subdomain.
-    pub(crate) rank_of: Vec<u32>,
+    /// Where the subdomains with entries in the owned rows are.
+    pub(super) locations: Locations,
     /// Global indices of the local subdomains, increasing.
     pub(crate) subdomains: Vec<u32>,
     /// Where the subdomains have the entries of B_gl.
@@ -104,14 +106,12 @@ impl Jump {
         sharing: &Sharing,
         many: usize,
     ) -> Jump {
-        let rank = comm.rank() as u32;
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
         let mut send = |entry: Entry| {
-            let to = sharing.rank_of[entry.subdomain as usize];
-            outgoing[to as usize].push(entry);
+            outgoing[sharing.locations.rank(entry.subdomain)].push(entry);
         };
 
-        let (own_local, per_subdomain) = local_groups(problem, sharing, rank);
+        let (own_local, per_subdomain) = local_groups(problem, sharing);
         let n_owned_local = own_local.iter().map(|g| g.len() * (g.len() - 1) / 2).sum();
         let n_owned = n_owned_local + problem.rows.len();
         let (first, n_global) = offsets(comm, n_owned);
@@ -164,14 +164,14 @@ impl Jump {
             known,
             order,
             local_start: per_subdomain,
-            rank_of: sharing.rank_of.clone(),
+            locations: sharing.locations.clone(),
             subdomains: problem.local.iter().map(|s| s.index as u32).collect(),
             ..Jump::default()
         };
         jump.held = jump.gap.clone();
         jump.reconcile_all();
         jump.receive(problem, sharing, exchange(comm, outgoing));
-        let (slots, places) = Slots::new(comm, &jump.blocks, &jump.rank_of, &jump.subdomains);
+        let (slots, places) = Slots::new(comm, &jump.blocks, &jump.locations, &jump.subdomains);
         jump.columns.couple(places);
         jump.slots = slots;
         jump
@@ -215,22 +215,16 @@ impl Jump {
         let seen = GhostRows::new(self.first, self.n_owned, &entries);
         (self.ghosts, self.ghost_is_contact) = seen.all().unzip();
 
-        let mut subdomains_of = vec![0; problem.n_bodies];
-        for &body in &sharing.body_of {
-            subdomains_of[body as usize] += 1;
-        }
         // Sorted by subdomain first, then by dof and row: each sort is small.
-        let mut here = vec![u32::MAX; problem.n_subdomains];
-        for (j, sub) in (0..).zip(&problem.local) {
-            here[sub.index] = j;
-        }
+        let numbered = problem.local.iter().zip(0..);
+        let here: FxHashMap<u32, u32> = numbered.map(|(s, j)| (s.index as u32, j)).collect();
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
         let of_contact = entries.iter().filter(|e| e.contact).count();
         let mut places: Vec<(u32, Place)> = Vec::with_capacity(of_contact);
         self.columns = JumpEntries::with_room(entries.len(), of_contact);
         for (k, e) in (0..).zip(&entries) {
             let row = seen.place(e.row as u32);
-            dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
+            dealt[here[&e.subdomain] as usize].push((e.local, row, k));
         }
         for (j, sub) in problem.local.iter().enumerate() {
             let mut mine = std::mem::take(&mut dealt[j]);
@@ -238,7 +232,7 @@ impl Jump {
             // Corners of a body with several subdomains are primal too, but not those of a solid. With ν near 1/2,
             // holding a corner makes the coarse functions stiffer than the cut that it saves.
             let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
-            let pinned = scalar && subdomains_of[sub.body] > 1;
+            let pinned = scalar && sharing.homes[&sub.body].is_cut;
             let mut dual = Vec::new();
             let mut corners = Vec::new();
             for (_, row, k) in mine {
@@ -305,13 +299,11 @@ impl Jump {
 fn local_groups<'a>(
     problem: &Substructures,
     sharing: &'a Sharing,
-    rank: u32,
 ) -> (Vec<&'a [Copy]>, Vec<usize>) {
     let mut groups = Vec::new();
     let mut start = vec![0];
     let mut rows = 0;
     for (sub, shared) in problem.local.iter().zip(&sharing.shared_dofs) {
-        debug_assert_eq!(sharing.rank_of[sub.index], rank);
         for &i in shared {
             let copies = sharing.shared(sub.dofs[i as usize]);
             let lowest = copies

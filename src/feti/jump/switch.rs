@@ -68,8 +68,7 @@ impl Jump {
                 new,
                 &mut self.known,
                 &mut |entry: Entry| {
-                    let to = self.rank_of[entry.subdomain as usize];
-                    outgoing[to as usize].push(entry);
+                    outgoing[self.locations.rank(entry.subdomain)].push(entry);
                 },
             );
         }

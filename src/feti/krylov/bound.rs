@@ -62,7 +62,7 @@ impl LinearMethod {
                 wide: natural.projector == ProjectorKind::Preconditioner,
                 contact: self.facts.inequalities > 0,
             };
-            worth::from(graph, &dual.stiffness.space.kernel_start, problem)
+            worth::from(graph, natural.columns.start(), problem)
         })
     }
 

@@ -248,10 +248,10 @@ impl Check<'_> {
 
     /// Largest |Rᵀ v| relative to the terms of the sum or to `scale`, whichever is larger.
     fn work_on_kernels(&self, v: Vec<Vec<f64>>, scale: f64) -> Result<f64> {
-        let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
+        let natural = &self.dual.natural;
         let mut sums = vec![0.0; 2 * natural.r];
         for (j, v) in v.iter().enumerate() {
-            let start = stiffness.space.kernel_start[self.problem.local[j].body];
+            let start = natural.columns.of(self.problem.local[j].body).start;
             for c in 0..natural.kernels[j].cols {
                 for (r, v) in natural.kernels[j].col(c).iter().zip(v) {
                     sums[start + c] += r * v;

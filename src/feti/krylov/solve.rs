@@ -285,8 +285,7 @@ impl LinearMethod {
     fn start(&self) -> Result<Iterate> {
         let dual = self.dual();
         let loads = Loads::new(&self.problem, &dual);
-        dual.natural
-            .check_held(&self.problem, &dual.stiffness, &loads.kernel)?;
+        dual.natural.check_held(&self.problem, &loads.kernel)?;
         let at = Iterate::new(&dual, loads)?;
         at.begin(&dual)?;
         Ok(at)

@@ -62,11 +62,11 @@ impl Averaging {
     ) -> Result<Averaging> {
         let (session, jump) = (&stiffness.session, &stiffness.jump);
         let comm = session.comm();
-        let me = comm.rank() as u32;
+        let me = comm.rank() as usize;
         let mut found: Vec<Vec<(u64, u32, f64)>> = Vec::new();
         let mut vertices = Vec::new();
         let mut far: BTreeSet<u64> = BTreeSet::new();
-        let rank_of = |c: &Copy| sharing.rank_of[c.subdomain as usize];
+        let rank_of = |c: &Copy| sharing.locations.rank(c.subdomain);
         for (j, (sub, local)) in problem.local.iter().zip(&stiffness.locals).enumerate() {
             let candidate = jump.columns.of(j).between_bodies(local.gamma().n_gamma());
             let mut here = Vec::new();
@@ -92,7 +92,7 @@ impl Averaging {
         }
         // The rank of the lowest copy numbers a dof that several ranks share.
         let far: Vec<u64> = far.into_iter().collect();
-        let owner = |dof: &u64| rank_of(&sharing.shared(*dof)[0]) as usize;
+        let owner = |dof: &u64| rank_of(&sharing.shared(*dof)[0]);
         let mut asked: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         far.iter().for_each(|dof| asked[owner(dof)].push(*dof));
         let received = exchange_words(comm, asked);

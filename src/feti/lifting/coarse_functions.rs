@@ -56,7 +56,7 @@ pub(crate) fn recipes(
 ) -> Vec<Recipe> {
     let (comm, team) = (stiffness.comm(), &stiffness.team);
     let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
-    let me = comm.rank() as u32;
+    let me = comm.rank() as usize;
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
     let columns = |j: usize| -> Vec<u32> {
         let of = functions[j].columns.iter();
@@ -101,7 +101,7 @@ pub(crate) fn recipes(
     for (j, lists) in given.into_iter().enumerate() {
         let from = problem.local[j].index as u64;
         for (to, mut rows) in lists {
-            let rank = sharing.rank_of[to as usize];
+            let rank = sharing.locations.rank(to);
             if rank == me {
                 let at = jump.local_index(to);
                 rows.iter_mut().for_each(|r| r.0 = places[at][r.0 as usize]);
@@ -112,7 +112,7 @@ pub(crate) fn recipes(
                     source: Source::Local(j),
                 });
             } else {
-                let words = &mut outgoing[rank as usize];
+                let words = &mut outgoing[rank];
                 let columns = columns(j);
                 words.extend([u64::from(to), from, columns.len() as u64, rows.len() as u64]);
                 words.extend(columns.iter().map(|&c| u64::from(c)));

@@ -92,7 +92,7 @@ impl Lifting {
         } = Sums::new(problem, stiffness, &functions, &recipes, keep);
         let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for sum in &sums {
-            sum.pack(&mut outgoing[space.owner[sum.body] as usize]);
+            sum.pack(&mut outgoing[space.owner(sum.subdomain())]);
         }
         drop(sums);
         let received = exchange_words(comm, outgoing);

@@ -23,7 +23,7 @@ const BLOCKS: usize = 32;
 
 /// The sum of Z_cᵀ S Z_c over some subdomains of a body.
 pub(crate) struct Sum {
-    pub body: usize,
+    /// The subdomains, by local number.
     members: Vec<usize>,
     /// Global columns, increasing.
     columns: Vec<u32>,
@@ -60,9 +60,7 @@ impl Sums {
                 None => groups.push((sub.body, vec![j])),
             }
         }
-        let each = team.map(groups.len(), |g| {
-            Sum::over(groups[g].0, &groups[g].1, recipes)
-        });
+        let each = team.map(groups.len(), |g| Sum::over(&groups[g].1, recipes));
         let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
         let first = representatives(locals, functions, recipes);
         let kinds = distinct(first.clone());
@@ -151,9 +149,8 @@ fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
 impl Sum {
     /// Zero sums for `members`: one for all of them, or one for each if the columns of some do not meet those of
     /// others. In the latter case less data is sent.
-    fn over(body: usize, members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
+    fn over(members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
         let empty = |members: &[usize], columns: Vec<u32>| Sum {
-            body,
             members: members.to_vec(),
             a: Dense::zeros(columns.len(), columns.len()),
             columns,
@@ -168,6 +165,11 @@ impl Sum {
         alone
             .map(|j| empty(std::slice::from_ref(j), recipes[*j].columns.clone()))
             .collect()
+    }
+
+    /// Local number of a subdomain of the body.
+    pub fn subdomain(&self) -> usize {
+        self.members[0]
     }
 
     /// [n, global columns, lower triangle by columns].

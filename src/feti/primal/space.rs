@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use rustc_hash::FxHashMap;
 
 use super::kernel;
 use super::matrix::{Outgoing, PrimalMatrix};
@@ -16,7 +17,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, offsets, sum_all};
+use crate::parallel::exchange::{exchange_words, offsets};
 use crate::parallel::halo::numbered;
 use crate::substructures::Substructures;
 
@@ -48,12 +49,8 @@ pub struct PrimalSpace {
     pub of_subdomain: Vec<Vec<u32>>,
     /// Bodies owned by this rank.
     pub owned: Vec<OwnedBody>,
-    /// Rank that owns each body; length n_bodies.
-    pub owner: Vec<u32>,
-    /// Dimension of each body's kernel; length n_bodies, the same on all ranks.
-    pub defect: Vec<usize>,
-    /// Column of R at which each body's kernel starts; length n_bodies + 1.
-    pub kernel_start: Vec<usize>,
+    /// For each local subdomain, the rank that owns its body's primal dofs.
+    owner: Vec<u32>,
     /// For each ghost the row of the kernel basis; its length is the defect of the body.
     pub z_at_ghosts: Vec<Vec<f64>>,
     /// S_Π of the owned bodies, regularised at the fixing dofs of floating ones.
@@ -71,12 +68,14 @@ impl PrimalSpace {
         locals: &[Scaled],
     ) -> PrimalSpace {
         let mut space = PrimalSpace {
-            owner: owners(problem, sharing),
+            owner: (problem.local.iter())
+                .map(|s| sharing.homes[&s.body].rank)
+                .collect(),
             ..PrimalSpace::default()
         };
         let asked = space.number(comm, problem, averages, locals);
         let mut room = vec![0; comm.size() as usize];
-        let to = |j: usize| space.owner[problem.local[j].body] as usize;
+        let to = |j: usize| space.owner(j);
         for (j, local) in locals.iter().enumerate() {
             room[to(j)] += Outgoing::words(local.gamma().n_pi());
         }
@@ -89,6 +88,11 @@ impl PrimalSpace {
         space.matrix = PrimalMatrix::new(comm, outgoing, space.first, space.n_owned);
         space.find_kernels(comm, problem, locals, &asked);
         space
+    }
+
+    /// The rank that owns the primal dofs of the body of local subdomain `j`.
+    pub fn owner(&self, j: usize) -> usize {
+        self.owner[j] as usize
     }
 
     /// Numbers the primal dofs rank after rank. Returns, for the owner, the numbers that every rank asked for.
@@ -111,7 +115,7 @@ impl PrimalSpace {
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {
                 let body = (sub.body as u64) << 2 | kind;
-                requests[self.owner[sub.body] as usize].extend([body, key]);
+                requests[self.owner(j)].extend([body, key]);
             }
         }
         let sent: Vec<usize> = requests.iter().map(|r| r.len() / 2).collect();
@@ -155,8 +159,9 @@ impl PrimalSpace {
             .local
             .iter()
             .zip(locals)
-            .map(|(sub, local)| {
-                let r = self.owner[sub.body] as usize;
+            .zip(&self.owner)
+            .map(|((_, local), &r)| {
+                let r = r as usize;
                 let n = local.gamma().n_pi();
                 next[r] += n;
                 answers[r][next[r] - n..next[r]]
@@ -181,7 +186,7 @@ impl PrimalSpace {
         let mut factors: Vec<Vec<u64>> = vec![Vec::new(); size];
         let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
         for (j, sub) in problem.local.iter().enumerate() {
-            let to = self.owner[sub.body] as usize;
+            let to = self.owner(j);
             let local = &locals[j];
             let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
             let factor = kernel::motion_factors(&sub.k, columns);
@@ -209,15 +214,13 @@ impl PrimalSpace {
         let values = self.by_body(&values, |w| (self.body_at(w[0]), 2 + w[1] as usize));
         let stiffness = self.local_stiffness(problem, locals);
         let mut owned = std::mem::take(&mut self.owned);
-        let mut defect = vec![0.0; problem.n_bodies];
         for body in &mut owned {
-            let stiffness = stiffness[body.body];
+            let stiffness = stiffness.get(&body.body).copied().unwrap_or_default();
             let of = |messages: &BTreeMap<usize, Vec<u64>>| {
                 messages.get(&body.body).cloned().unwrap_or_default()
             };
             body.z = self.kernel_of(body, &of(&factors), &of(&values), stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
-            defect[body.body] = body.z.cols as f64;
             let n = body.range.len() as f64;
             // Any positive number makes S_Π regular; the mean diagonal entry keeps its condition. If nothing but the
             // fixing dof holds a body, its diagonal is rounding; the number is one then.
@@ -232,14 +235,6 @@ impl PrimalSpace {
             }
         }
         self.owned = owned;
-        sum_all(comm, &mut defect);
-        self.defect = defect.iter().map(|&d| d as usize).collect();
-        self.kernel_start = std::iter::once(0)
-            .chain(self.defect.iter().scan(0, |sum, d| {
-                *sum += d;
-                Some(*sum)
-            }))
-            .collect();
         self.share_kernels(comm, asked);
     }
 
@@ -268,12 +263,13 @@ impl PrimalSpace {
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of each body.
-    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled]) -> Vec<f64> {
-        let mut out = vec![0.0f64; problem.n_bodies];
+    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled]) -> FxHashMap<usize, f64> {
+        let mut out: FxHashMap<usize, f64> = FxHashMap::default();
         for (sub, local) in problem.local.iter().zip(locals) {
-            for &i in &local.gamma().interface {
-                out[sub.body] = out[sub.body].max(sub.k.get(i as usize, i as usize));
-            }
+            let interface = local.gamma().interface.iter();
+            let diagonal = interface.map(|&i| sub.k.get(i as usize, i as usize));
+            let largest = out.entry(sub.body).or_default();
+            *largest = diagonal.fold(*largest, f64::max);
         }
         out
     }
@@ -349,8 +345,11 @@ impl PrimalSpace {
     }
 
     /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
-    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Scaled) -> Dense {
-        let mut r = Dense::zeros(local.gamma().n_gamma(), self.defect[body]);
+    pub fn kernel_on_interface(&self, j: usize, local: &Scaled) -> Dense {
+        // A floating body has primal dofs in each of its subdomains.
+        let first = self.of_subdomain[j].first();
+        let defect = first.map_or(0, |&g| self.z_at_ghosts[g as usize].len());
+        let mut r = Dense::zeros(local.gamma().n_gamma(), defect);
         for c in 0..r.cols {
             let z: Vec<f64> = self.of_subdomain[j]
                 .iter()
@@ -360,13 +359,4 @@ impl PrimalSpace {
         }
         r
     }
-}
-
-/// The rank of every body's lowest subdomain.
-fn owners(problem: &Substructures, sharing: &Sharing) -> Vec<u32> {
-    let mut owner = vec![0; problem.n_bodies];
-    for (&body, &rank) in sharing.body_of.iter().zip(&sharing.rank_of).rev() {
-        owner[body as usize] = rank;
-    }
-    owner
 }

@@ -3,6 +3,7 @@
 pub mod balance;
 pub mod by_column;
 mod choice;
+pub mod columns;
 pub mod distributed;
 pub mod gram;
 pub mod graph;

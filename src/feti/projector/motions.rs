@@ -33,12 +33,11 @@ impl NaturalCoarse {
             return Ok(Vec::new());
         }
         let n = least as usize;
-        let start = &stiffness.space.kernel_start;
-        let columns_of = |body: usize| start[body]..start[body + 1];
+        let columns_of = |body: usize| self.columns.of(body);
         let here = distinct(problem.local.iter().flat_map(|s| columns_of(s.body)));
         let ghosts: Vec<u32> = here.iter().map(|&c| c as u32).collect();
         let halo = Halo::new(&stiffness.session, like, &ghosts)?;
-        let most = start.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+        let most = self.columns.most();
         // RᵀR and Rᵀ times the motions of each body, column by column.
         let mut sums = vec![vec![0.0; here.len()]; most + n];
         for (j, (sub, motions)) in problem.local.iter().zip(&known).enumerate() {
@@ -68,8 +67,9 @@ impl NaturalCoarse {
         };
         let sums: Vec<Vec<f64>> = sums.iter().map(of_owner).collect::<Result<_>>()?;
         let mut out = vec![vec![0.0; own.len()]; n];
-        for columns in start.windows(2).filter(|w| own.contains(&w[0])) {
-            let (at, d) = (columns[0] - own.start, columns[1] - columns[0]);
+        let bodies = (0..problem.n_bodies).map(columns_of);
+        for columns in bodies.filter(|c| own.contains(&c.start)) {
+            let (at, d) = (columns.start - own.start, columns.len());
             let gram = Semidefinite::new(&Dense::from_fn(d, d, |i, p| sums[p][at + i]));
             for (m, out) in out.iter_mut().enumerate() {
                 let alpha = &mut out[at..at + d];

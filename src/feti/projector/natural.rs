@@ -13,6 +13,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::columns::KernelColumns;
 use super::distributed::Distributed;
 use super::gram::Gram;
 use super::graph::BodyGraph;
@@ -53,6 +54,8 @@ pub struct NaturalCoarse {
     pub projector: ProjectorKind,
     /// R on the interface of each local subdomain (n_Γ × defect of its body).
     pub kernels: Vec<Dense>,
+    /// Which columns of R each body has.
+    pub columns: KernelColumns,
     /// First column of R of each local subdomain's body.
     first_column: Vec<usize>,
     /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
@@ -105,21 +108,17 @@ impl NaturalCoarse {
             )));
         }
         let space = &stiffness.space;
-        let r = *space
-            .kernel_start
-            .last()
-            .expect("one start per body and the end");
-        let local = problem.local.iter().zip(&stiffness.locals).enumerate();
-        let kernels: Vec<Dense> = local
-            .map(|(j, (sub, local))| space.kernel_on_interface(j, sub.body, local))
+        let columns = KernelColumns::new(comm, problem.n_bodies, &space.owned);
+        let r = columns.n();
+        let kernels: Vec<Dense> = (stiffness.locals.iter().enumerate())
+            .map(|(j, local)| space.kernel_on_interface(j, local))
             .collect();
-        let first_column: Vec<usize> = problem
-            .local
-            .iter()
-            .map(|s| space.kernel_start[s.body])
+        let first_column: Vec<usize> = (problem.local.iter())
+            .map(|s| columns.of(s.body).start)
             .collect();
         let mut natural = NaturalCoarse {
             r,
+            columns,
             projector: ProjectorKind::Identity,
             kernels,
             first_column,
@@ -140,10 +139,9 @@ impl NaturalCoarse {
         };
         if r > 0 {
             natural.all = natural.all_rows(stiffness);
-            let start = &space.kernel_start;
+            let start = natural.columns.start();
             let lists = meeting(comm, &natural.all, &natural.all, start);
-            let sharing = natural.sharing(stiffness);
-            natural.shape = Some(Shape::new(comm, &lists, start, &sharing));
+            natural.shape = Some(Shape::new(comm, &lists, start, &natural.sharing()));
             natural.spread = spread(comm, problem, stiffness);
             natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;
@@ -210,14 +208,13 @@ impl NaturalCoarse {
         };
         let (session, comm) = (&stiffness.session, stiffness.comm());
         let gram = self.gram(comm, &stiffness.jump.active);
-        let (g, qg, start) = (&self.g, self.qg(), &stiffness.space.kernel_start);
+        let (g, qg, start) = (&self.g, self.qg(), self.columns.start());
         let shape = match self.projector {
             // Q reaches the rows of neighbours.
             ProjectorKind::Preconditioner => {
                 let graph = self.graph(problem, stiffness);
-                self.wide.get_or_init(|| {
-                    Shape::new(comm, &graph.second(), start, &self.sharing(stiffness))
-                })
+                self.wide
+                    .get_or_init(|| Shape::new(comm, &graph.second(), start, &self.sharing()))
             }
             _ => self.shape.as_ref().expect("a body floats"),
         };
@@ -275,10 +272,10 @@ impl NaturalCoarse {
     }
 
     /// How ranks share the factors.
-    fn sharing<'a>(&'a self, stiffness: &'a Stiffness) -> Sharing<'a> {
+    fn sharing(&self) -> Sharing<'_> {
         Sharing {
             copies: self.copies,
-            home: &stiffness.space.owner,
+            home: self.columns.home(),
             rows: Some(&self.all),
         }
     }

@@ -123,8 +123,8 @@ impl NaturalCoarse {
     ) -> Result<Rows> {
         let n = stiffness.jump.n_owned;
         let graph = self.graph(problem, stiffness);
-        let start = &stiffness.space.kernel_start;
-        let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
+        let columns =
+            sweep::kernel_columns(&self.g, self.columns.start(), |b| graph.near[b].clone());
         let like = PetscVec::mpi(&stiffness.session, n)?;
         let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
         let mut images = sweep::images(&like, graph, &columns, apply)?;

@@ -3,6 +3,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use crate::feti::interface::location::Locations;
 use crate::feti::jump::blocks::Block;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{any, exchange_words, offsets};
@@ -27,7 +28,7 @@ impl Slots {
     pub fn new(
         comm: &SimpleCommunicator,
         blocks: &[Block],
-        rank_of: &[u32],
+        locations: &Locations,
         subdomains: &[u32],
     ) -> (Slots, Vec<Places>) {
         let mut places: Vec<Places> = vec![Vec::new(); subdomains.len()];
@@ -41,7 +42,7 @@ impl Slots {
             for (slot, copies) in block.slots.clone().zip(block.copies()) {
                 for copy in copies {
                     let place = u64::from(copy.subdomain) << 32 | u64::from(copy.local);
-                    let to = &mut outgoing[rank_of[copy.subdomain as usize] as usize];
+                    let to = &mut outgoing[locations.rank(copy.subdomain)];
                     to.extend([place, (first + slot) as u64]);
                 }
             }
