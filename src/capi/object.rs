@@ -12,8 +12,9 @@ use super::surface::Surface;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Outcome, Torn, Work};
 use crate::error::Fault;
-use crate::parallel::exchange::{exchange_words, gather_all, highest};
+use crate::parallel::exchange::{exchange_words, highest};
 use crate::parallel::halo::Halo;
+use crate::parallel::owners::Owners;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
 use std::collections::HashSet;
@@ -319,12 +320,10 @@ impl Object {
         marks.set(0.0)?;
         let comm = self.session.comm();
         let range = marks.ownership_range();
-        let starts = gather_all(comm, &[range.start as u64]).concat();
-        let mut outgoing = vec![Vec::new(); starts.len()];
+        let owners = Owners::new(comm, range.start);
+        let mut outgoing = vec![Vec::new(); self.session.size()];
         for &dof in list {
-            // The last rank that starts at or before the unknown: one without unknowns starts where the next one does.
-            let owner = starts.partition_point(|&s| s <= dof as u64) - 1;
-            outgoing[owner].push(dof as u64);
+            outgoing[owners.of(dof as u64)].push(dof as u64);
         }
         {
             let mut entries = marks.array_mut()?;

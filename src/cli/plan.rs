@@ -39,12 +39,7 @@ pub fn run(session: &Session, args: Plan) -> Result<()> {
     let settings = MethodSettings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
-    let sizes = session.agree(Sizes::with(
-        session.comm(),
-        &substructures,
-        &team,
-        settings.primal,
-    ))?;
+    let sizes = Sizes::with(session, &substructures, &team, settings.primal)?;
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
     let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene));

@@ -8,6 +8,7 @@ use super::frame::Local;
 use super::rows::rows;
 use super::solver::{Embedded, GivenResults, Reached};
 use super::torn::GivenRow;
+use super::touched::Here;
 use crate::feti::Numbers;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::any;
@@ -142,10 +143,16 @@ impl Embedded {
     fn replaced(&self, given: Vec<GivenRow>) -> Result<Replaced> {
         let (session, frame) = (&self.session, &self.frame);
         let (n, parts) = (frame.n_global, &frame.parts);
-        let mine = frame.sharers.first..frame.sharers.first + parts.len();
-        let mine = &frame.body_of[mine];
-        let contact = Contact::new(session, n, &given, parts, &frame.known, mine)?;
-        let mut all = rows(session, n, parts, &frame.sharers, &frame.body_of, &contact);
+        let here = Here {
+            layout: &frame.layout,
+            ghosts: &frame.ghosts,
+            halo: &self.halo,
+            known: &frame.known,
+            parts,
+            body_of: &frame.bodies.mine,
+        };
+        let contact = Contact::new(session, &given, &here)?;
+        let mut all = rows(session, n, parts, &frame.sharers, &frame.bodies, &contact);
         let n_ties = all.len();
         all.extend(contact.rows());
         let some = any(session.comm(), self.reached.borrow().is_some());

@@ -3,12 +3,15 @@
 
 use super::hold::Bond;
 use super::parts::Part;
+use super::sharing::Sharers;
+use crate::linalg::sorted::distinct;
 use crate::linalg::union_find::UnionFind;
+use crate::parallel::exchange::{any, exchange_words, offsets};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Default number of subdomains per body of a partition.
 const USUAL: usize = 8;
@@ -54,49 +57,133 @@ pub fn by_most_dofs(
     Ok(())
 }
 
-/// The groups that the host named; `None` if it named none.
+/// The groups of this rank's subdomains that the host named; `None` if it named none on any rank. `first` is the number
+/// of the first of them. Collective.
 ///
-/// # Errors The host named bodies for some subdomains but not for all.
-pub fn named_groups(named: &[Option<u64>]) -> Result<Option<Vec<u64>>> {
-    if named.iter().all(Option::is_none) {
+/// # Errors
+/// The host named bodies for some subdomains but not for all; the same error on all ranks.
+pub fn named_groups(session: &Session, first: usize, parts: &[Part]) -> Result<Option<Vec<u64>>> {
+    if !any(session.comm(), parts.iter().any(|p| p.body.is_some())) {
         return Ok(None);
     }
-    let given = |(s, body): (usize, &Option<u64>)| {
-        body.ok_or_else(|| {
+    let given = |(j, part): (usize, &Part)| {
+        part.body.ok_or_else(|| {
             Error::input(format!(
-                "subdomain {s} was given no body but others were, \
-                 expected a body for every subdomain (KSPFETIFETISetBody on all ranks) or for none"
+                "subdomain {} was given no body but others were, \
+                 expected a body for every subdomain (KSPFETIFETISetBody on all ranks) or for none",
+                first + j
             ))
         })
     };
-    named
-        .iter()
-        .enumerate()
-        .map(given)
-        .collect::<Result<_>>()
-        .map(Some)
+    let groups = parts.iter().enumerate().map(given).collect();
+    session.agree(groups).map(Some)
 }
 
-/// The body of every subdomain, numbered from 0 by lowest subdomain.
-///
-/// A group that is not connected through bonds that hold becomes several bodies.
-pub fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
-    let mut sets = UnionFind::new(group.len());
-    let joins = |b: &&Bond| b.holds && group[b.low] == group[b.high];
-    for bond in bonds.iter().filter(joins) {
-        sets.join(bond.low, bond.high);
-    }
-    let mut next = 0..;
-    let mut body_of: Vec<usize> = Vec::with_capacity(group.len());
-    for s in 0..group.len() {
-        // The representative of a set is its lowest member, which comes before the others.
-        let body = match sets.find(s) {
-            lowest if lowest < s => body_of[lowest],
-            _ => next.next().expect("numbers do not end"),
+/// The bodies, as a rank knows them: numbered from 0 by lowest subdomain.
+pub struct Bodies {
+    /// Bodies over all ranks.
+    pub n: usize,
+    /// The body of each of this rank's subdomains.
+    pub mine: Vec<usize>,
+    /// The same, and the bodies of their neighbours.
+    around: HashMap<u32, u64>,
+}
+
+impl Bodies {
+    /// A group that is not connected through bonds that hold becomes several bodies. `group` has the groups of this
+    /// rank's subdomains, `bonds` the bonds whose lower subdomain is on this rank. Collective.
+    pub fn new(session: &Session, sharers: &Sharers, group: &[u64], bonds: &[Bond]) -> Bodies {
+        let comm = session.comm();
+        let lowest = lowest_of_bodies(session, sharers, group, bonds);
+        let own = lowest.iter().zip(sharers.first as u32..);
+        let own: Vec<u32> = own.filter(|(low, s)| *low == s).map(|(_, s)| s).collect();
+        let (before, n) = offsets(comm, own.len());
+        // The rank of the lowest subdomain knows the number.
+        let wanted = distinct(lowest.iter().copied());
+        let mut outgoing = vec![Vec::new(); session.size()];
+        for &low in &wanted {
+            outgoing[sharers.owners.of(low)].push(u64::from(low));
+        }
+        let number = |word: &u64| {
+            let place = own.binary_search(&(*word as u32));
+            (before + place.expect("it is the lowest of a body")) as u64
         };
-        body_of.push(body);
+        let asked = exchange_words(comm, outgoing);
+        let replies = asked.iter().map(|words| words.iter().map(number).collect());
+        // Higher ranks have higher subdomains.
+        let numbers = exchange_words(comm, replies.collect()).concat();
+        let body = |low: &u32| {
+            let place = wanted.binary_search(low);
+            numbers[place.expect("it was asked for")]
+        };
+        let mine: Vec<u64> = lowest.iter().map(body).collect();
+        Bodies {
+            n,
+            around: sharers.around(session, &mine),
+            mine: mine.iter().map(|&b| b as usize).collect(),
+        }
     }
-    body_of
+
+    /// The body of a subdomain of this rank, or of a neighbour of one.
+    pub fn of(&self, subdomain: u32) -> usize {
+        self.around[&subdomain] as usize
+    }
+}
+
+/// The lowest subdomain of the body of each of this rank's subdomains. Ranks tell each other across the bonds what they
+/// know, until nobody learns of a lower one. Collective.
+fn lowest_of_bodies(
+    session: &Session,
+    sharers: &Sharers,
+    group: &[u64],
+    bonds: &[Bond],
+) -> Vec<u32> {
+    let (comm, first) = (session.comm(), sharers.first);
+    let groups = sharers.around(session, group);
+    let mut sets = UnionFind::new(group.len());
+    // Subdomains of this rank, by their place, that a bond joins to one of another rank.
+    let mut links: Vec<(usize, u32)> = Vec::new();
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    for bond in bonds.iter().filter(|b| b.holds) {
+        let [low, high] = [bond.low as u32, bond.high as u32];
+        if groups[&low] != groups[&high] {
+            continue;
+        }
+        if bond.high < first + group.len() {
+            sets.join(bond.low - first, bond.high - first);
+        } else {
+            links.push((bond.low - first, high));
+            outgoing[sharers.owners.of(high)].push(u64::from(high) << 32 | u64::from(low));
+        }
+    }
+    let received = exchange_words(comm, outgoing).concat();
+    links.extend(
+        received
+            .iter()
+            .map(|w| ((w >> 32) as usize - first, *w as u32)),
+    );
+    // By set: a representative is the lowest of its set on this rank.
+    let mut lowest: Vec<u32> = (first as u32..).take(group.len()).collect();
+    let mut told = vec![u32::MAX; links.len()];
+    loop {
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        let mut news = false;
+        for (&(j, other), told) in links.iter().zip(&mut told) {
+            let low = lowest[sets.find(j)];
+            if low < *told {
+                (*told, news) = (low, true);
+                outgoing[sharers.owners.of(other)].push(u64::from(other) << 32 | u64::from(low));
+            }
+        }
+        if !any(comm, news) {
+            let lowest = |j| lowest[sets.find(j)];
+            return (0..group.len()).map(lowest).collect();
+        }
+        for word in exchange_words(comm, outgoing).concat() {
+            let set = sets.find((word >> 32) as usize - first);
+            lowest[set] = lowest[set].min(word as u32);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,18 +1,17 @@
 //! Rows that the host adds to the assembled problem: contact between bodies, obstacles, equations.
 //!
 //! The host numbers global dofs, the method numbers body dofs. The method also wants rows that share a dof on the same
-//! rank. Therefore all ranks see all rows (there are few, as they belong to surfaces) and find the blocks of connected
-//! rows; the lowest dof of a block determines the rank that takes it.
+//! rank: the lowest dof of a block of connected rows determines the rank that takes the block.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 
-use super::parts::{body_dof, Part};
+use super::known_dofs::KnownDofs;
+use super::placed::Placed;
 use super::torn::GivenRow;
-use crate::linalg::sorted::distinct;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::{exchange_words, gather_all};
+use super::touched::{Here, Touched};
+use crate::parallel::exchange::{any, exchange_words, total};
 use crate::petsc::Session;
-use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
+use crate::substructures::{InterfaceRow, RowKind};
 use crate::{Error, Result};
 
 /// A row on the rank that takes it.
@@ -21,107 +20,83 @@ struct Taken {
     from: (usize, usize),
     /// The row as the method gets it.
     row: InterfaceRow,
-    /// (global dof, coefficient) pairs of its terms at known dofs.
-    known: Vec<(u32, f64)>,
+    /// (place in the list of known dofs, coefficient) of its terms at known dofs.
+    known: Vec<(usize, f64)>,
 }
 
 /// The host's rows, distributed over the ranks.
 #[derive(Default)]
 pub struct Contact {
     taken: Vec<Taken>,
-    /// The block of every unknown that appears in a row, by global dof. A block is named by its lowest dof.
+    /// The block of every unknown of this rank's subdomains that appears in a row, by global dof. A block is named by
+    /// its lowest dof.
     block: HashMap<u32, u32>,
     /// The rank that takes each row that this rank gave; `None` for rows without unknowns.
     homes: Vec<Option<usize>>,
-    /// Whether a row on any rank has a term at a known dof.
-    some_known: bool,
+    /// The known dofs in this rank's rows; `None` if no row on any rank has one.
+    known: Option<KnownDofs>,
     /// Number of rows over all ranks.
     pub n_global: usize,
     /// Whether any row on any rank is an inequality.
     pub inequalities: bool,
 }
 
-/// A row as every rank sees it.
-struct Seen {
-    from: (usize, usize),
-    kind: RowKind,
-    gap: f64,
-    terms: Vec<(u32, f64)>,
-}
-
-/// Marks a known dof among the dofs of rows.
-const KNOWN: u64 = u64::MAX;
-
 impl Contact {
-    /// Distributes the rows `given` by this rank; `known` has the known dofs of this rank, `body_of` the body of every
-    /// local part. Collective.
+    /// Distributes the rows `given` by this rank. Collective.
     ///
     /// # Errors
-    /// A row with a dof that no subdomain has; the same error on all ranks.
-    pub fn new(
-        session: &Session,
-        n_dofs: usize,
-        given: &[GivenRow],
-        parts: &[Part],
-        known: &HashSet<u32>,
-        body_of: &[usize],
-    ) -> Result<Contact> {
-        let seen = everywhere(session, given);
-        let mut out = Contact {
-            homes: vec![None; given.len()],
-            n_global: seen.len(),
-            inequalities: seen.iter().any(|s| s.kind == RowKind::Inequality),
-            ..Contact::default()
-        };
-        if seen.is_empty() {
-            return Ok(out);
+    /// A row with a dof that no subdomain has, the same error on all ranks; PETSc's own.
+    pub fn new(session: &Session, given: &[GivenRow], here: &Here<'_>) -> Result<Contact> {
+        let comm = session.comm();
+        let n_global = total(comm, given.len() as f64) as usize;
+        if n_global == 0 {
+            return Ok(Contact::default());
         }
-        let owner = lowest_bodies(session, &seen, parts, known, body_of);
-        for row in &seen {
-            if let Some((dof, _)) = row.terms.iter().find(|t| !owner.contains_key(&t.0)) {
-                return Err(Error::input(format!(
-                    "contact row {} of rank {} has a coefficient at unknown {dof}, \
+        let touched = Touched::new(session, given, here)?;
+        let place = |(r, row): (usize, &GivenRow)| {
+            Placed::new(r, row, &touched).map_err(|dof| {
+                Error::input(format!(
+                    "contact row {r} of rank {} has a coefficient at unknown {dof}, \
                      which no subdomain has, expected unknowns of subdomains",
-                    row.from.1, row.from.0
-                )));
-            }
+                    session.rank()
+                ))
+            })
+        };
+        let placed = given.iter().enumerate().map(place);
+        let placed: Vec<Option<Placed>> = session.agree(placed.collect())?;
+        let home = |row: &Placed| row.block as usize % session.size();
+        let homes = placed.iter().map(|p| p.as_ref().map(home)).collect();
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for row in placed.iter().flatten() {
+            row.pack(&mut outgoing[home(row)]);
         }
-        let free = |dof: &u32| owner[dof] != KNOWN;
-        out.some_known = seen.iter().flat_map(|s| &s.terms).any(|t| !free(&t.0));
-        out.block = blocks(&seen, free);
-        for row in seen {
-            type Terms = Vec<(u32, f64)>;
-            let (unknown, known): (Terms, Terms) = row.terms.iter().partition(|t| free(&t.0));
-            // A row without unknowns is left out: the solver cannot influence whether it holds.
-            let Some(first) = unknown.first() else {
-                continue;
-            };
-            let root = out.block[&first.0];
-            let home = root as usize % session.size();
-            if row.from.0 == session.rank() {
-                out.homes[row.from.1] = Some(home);
-            }
-            if home != session.rank() {
-                continue;
-            }
-            let term = |&(dof, c): &(u32, f64)| (body_dof(n_dofs, owner[&dof] as usize, dof), c);
-            out.taken.push(Taken {
-                from: row.from,
-                row: InterfaceRow {
-                    terms: unknown.iter().map(term).collect(),
-                    gap: row.gap,
-                    kind: row.kind,
-                    holds: true,
-                    block: root.into(),
-                    label: label(row.from.1, &unknown, &owner),
-                },
-                known,
-            });
+        let mut rows: Vec<(usize, Placed)> = Vec::new();
+        for (rank, words) in exchange_words(comm, outgoing).iter().enumerate() {
+            rows.extend(Placed::unpack(words).into_iter().map(|row| (rank, row)));
         }
-        Ok(out)
+        let terms = || rows.iter().flat_map(|(_, row)| row.known());
+        let known = any(comm, terms().next().is_some());
+        let known = known.then(|| KnownDofs::new(session, terms().map(|t| (t.0, t.1))));
+        let taken = |(rank, row): &(usize, Placed)| Taken {
+            from: (*rank, row.number),
+            row: row.row(here.layout.global_len()),
+            known: known.as_ref().map_or(Vec::new(), |known| {
+                row.known()
+                    .map(|(rank, dof, c)| (known.place(rank, dof), c))
+                    .collect()
+            }),
+        };
+        Ok(Contact {
+            taken: rows.iter().map(taken).collect(),
+            block: touched.here,
+            homes,
+            known,
+            n_global,
+            inequalities: any(comm, given.iter().any(|r| r.kind == RowKind::Inequality)),
+        })
     }
 
-    /// The block of a global dof, if a row contains the dof.
+    /// The block of a global dof of this rank's subdomains, if a row contains the dof.
     pub fn block(&self, dof: u32) -> Option<u32> {
         self.block.get(&dof).copied()
     }
@@ -134,21 +109,12 @@ impl Contact {
     /// Right-hand sides of this rank's rows, with the terms at known dofs moved there. `values` has the values of the
     /// known dofs of this rank's subdomains, by global dof. Collective.
     pub fn gaps(&self, session: &Session, values: &HashMap<u32, f64>) -> Vec<f64> {
-        if !self.some_known {
-            return self.taken.iter().map(|t| t.row.gap).collect();
-        }
-        let mine: Vec<u64> = values
-            .iter()
-            .flat_map(|(&dof, v)| [u64::from(dof), v.to_bits()])
-            .collect();
-        let all: HashMap<u64, f64> = gather_all(session.comm(), &mine)
-            .concat()
-            .chunks_exact(2)
-            .map(|w| (w[0], f64::from_bits(w[1])))
-            .collect();
-        let value = |dof: u32| all.get(&u64::from(dof)).copied().unwrap_or(0.0);
+        let values = match &self.known {
+            None => Vec::new(),
+            Some(known) => known.fetch(session, values),
+        };
         let gap = |t: &Taken| {
-            let moved: f64 = t.known.iter().map(|&(dof, c)| c * value(dof)).sum();
+            let moved: f64 = t.known.iter().map(|&(k, c)| c * values[k]).sum();
             t.row.gap - moved
         };
         self.taken.iter().map(gap).collect()
@@ -196,101 +162,4 @@ impl Contact {
         }
         out
     }
-}
-
-/// The label of row `number`: its bodies and the unknowns on its two sides.
-fn label(number: usize, unknown: &[(u32, f64)], owner: &HashMap<u32, u64>) -> RowLabel {
-    let nodes = unknown.iter().map(|&(dof, _)| BodyNode {
-        body: owner[&dof] as usize,
-        node: dof as usize,
-    });
-    let first = nodes.clone().next();
-    let second = nodes
-        .clone()
-        .find(|n| Some(n.body) != first.map(|f| f.body));
-    let source = match second {
-        Some(_) => RowSource::Interface(number),
-        None => RowSource::Obstacle(number),
-    };
-    RowLabel::new(source, [first, second])
-}
-
-/// All rows on all ranks.
-fn everywhere(session: &Session, given: &[GivenRow]) -> Vec<Seen> {
-    let mut mine = Vec::new();
-    for (r, row) in given.iter().enumerate() {
-        let kind = u64::from(row.kind == RowKind::Inequality);
-        // Terms at the same dof are added up.
-        let mut terms: BTreeMap<u32, f64> = BTreeMap::new();
-        for &(dof, c) in &row.terms {
-            *terms.entry(dof).or_default() += c;
-        }
-        mine.extend([r as u64, kind, row.gap.to_bits(), terms.len() as u64]);
-        mine.extend(terms.iter().flat_map(|(&d, c)| [u64::from(d), c.to_bits()]));
-    }
-    let mut seen = Vec::new();
-    for (rank, words) in gather_all(session.comm(), &mine).iter().enumerate() {
-        let mut rest = &words[..];
-        while let [r, kind, gap, n, tail @ ..] = rest {
-            let (terms, tail) = tail.split_at(2 * *n as usize);
-            seen.push(Seen {
-                from: (rank, *r as usize),
-                kind: match kind {
-                    0 => RowKind::Equality,
-                    _ => RowKind::Inequality,
-                },
-                gap: f64::from_bits(*gap),
-                terms: terms
-                    .chunks_exact(2)
-                    .map(|w| (w[0] as u32, f64::from_bits(w[1])))
-                    .collect(),
-            });
-            rest = tail;
-        }
-    }
-    seen
-}
-
-/// For every dof in a row, the lowest body that has it (the other bodies are tied to that one), or [`KNOWN`].
-fn lowest_bodies(
-    session: &Session,
-    seen: &[Seen],
-    parts: &[Part],
-    known: &HashSet<u32>,
-    body_of: &[usize],
-) -> HashMap<u32, u64> {
-    let touched = distinct(seen.iter().flat_map(|s| &s.terms).map(|t| t.0));
-    let mut mine = Vec::new();
-    for &dof in &touched {
-        if known.contains(&dof) {
-            mine.extend([u64::from(dof), KNOWN]);
-        }
-        for (part, &body) in parts.iter().zip(body_of) {
-            if part.dofs.binary_search(&dof).is_ok() {
-                mine.extend([u64::from(dof), body as u64]);
-            }
-        }
-    }
-    let mut lowest = HashMap::new();
-    for w in gather_all(session.comm(), &mine).concat().chunks_exact(2) {
-        let entry = lowest.entry(w[0] as u32).or_insert(w[1]);
-        *entry = w[1].min(*entry);
-    }
-    lowest
-}
-
-/// Maps every unknown in a row to the lowest dof of its block of connected rows.
-fn blocks(seen: &[Seen], free: impl Fn(&u32) -> bool) -> HashMap<u32, u32> {
-    let unknowns = |row: &Seen| row.terms.iter().map(|t| t.0).filter(&free).collect();
-    let rows: Vec<Vec<u32>> = seen.iter().map(unknowns).collect();
-    let dofs = distinct(rows.concat());
-    let place = |dof: &u32| dofs.binary_search(dof).expect("every dof is in the list");
-    let mut sets = UnionFind::new(dofs.len());
-    for row in &rows {
-        for dof in row.iter().skip(1) {
-            sets.join(place(&row[0]), place(dof));
-        }
-    }
-    let lowest = |(k, &dof)| (dof, dofs[sets.find(k)]);
-    dofs.iter().enumerate().map(lowest).collect()
 }

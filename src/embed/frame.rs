@@ -8,6 +8,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 
+use super::bodies::Bodies;
 use super::kernels::Columns;
 use super::motions::CANCELS;
 use super::nullspace::cancels;
@@ -31,8 +32,7 @@ pub struct Frame {
     /// The parts without their matrices, which the solver has.
     pub parts: Vec<Part>,
     pub sharers: Sharers,
-    /// Body of every subdomain.
-    pub body_of: Vec<usize>,
+    pub bodies: Bodies,
     /// Motions of every part, and whether its matrix maps each of them to zero.
     pub motions: Vec<(Columns, Vec<bool>)>,
 }

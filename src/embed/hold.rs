@@ -7,6 +7,7 @@
 
 use std::collections::BTreeSet;
 
+use super::bodies::Bodies;
 use super::classes::Class;
 use super::kernels::{combinations, Columns};
 use super::motions::Motions;
@@ -14,7 +15,7 @@ use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::Primal;
-use crate::parallel::exchange::gather_all;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::EntityKind;
 
@@ -46,10 +47,10 @@ const LOOSE: f64 = 1e-6;
 const MANY: usize = 12;
 
 impl Motions {
-    /// All bonds, the same on every rank. Nothing holds a subdomain with a mechanism: it becomes a body of its own.
-    /// Collective.
-    pub fn bonds(&self, session: &Session, parts: &[Part], sharers: &Sharers) -> Vec<Bond> {
-        let mut mine = Vec::new();
+    /// The bonds whose lower subdomain is on this rank. Nothing holds a subdomain with a mechanism: it becomes a body
+    /// of its own.
+    pub fn bonds(&self, parts: &[Part], sharers: &Sharers) -> Vec<Bond> {
+        let mut out = Vec::new();
         for j in 0..parts.len() {
             let low = sharers.first + j;
             for (high, dofs) in &sharers.neighbours[j] {
@@ -61,26 +62,20 @@ impl Motions {
                     span.add(row, LOOSE);
                 }
                 let high = *high as usize;
-                let loose = self.loose[low] || self.loose[high];
-                let holds = !loose && span.rank() >= self.needed(low, high);
-                mine.extend([
-                    (low as u64) << 32 | high as u64,
-                    (dofs.len() as u64) << 1 | u64::from(holds),
-                ]);
+                let loose = self.is_loose(low) || self.is_loose(high);
+                out.push(Bond {
+                    low,
+                    high,
+                    shared: dofs.len(),
+                    holds: !loose && span.rank() >= self.needed(low, high),
+                });
             }
         }
-        let words = gather_all(session.comm(), &mine).concat();
-        let bond = |w: &[u64]| Bond {
-            low: (w[0] >> 32) as usize,
-            high: w[0] as u32 as usize,
-            shared: (w[1] >> 1) as usize,
-            holds: w[1] & 1 == 1,
-        };
-        words.chunks_exact(2).map(bond).collect()
+        out
     }
 
     /// The constraints needed besides vertices and the averages of `primal`: pairs of subdomains whose common faces are
-    /// averaged (the same on every rank), and dofs of every local subdomain. Collective.
+    /// averaged, those of which this rank has one, and dofs of every local subdomain. Collective.
     pub fn missing(
         &self,
         session: &Session,
@@ -90,12 +85,12 @@ impl Motions {
         classes: &[Vec<Class>],
         shape: &Shape,
     ) -> (BTreeSet<(u32, u32)>, Vec<BTreeSet<u32>>) {
-        let mut averaged = Vec::new();
+        let mut averaged = BTreeSet::new();
         let mut nodes: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); parts.len()];
         for (j, part) in parts.iter().enumerate() {
             let low = sharers.first + j;
             for (high, dofs) in &sharers.neighbours[j] {
-                let same = shape.body_of[low] == shape.body_of[*high as usize];
+                let same = shape.bodies.of(low as u32) == shape.bodies.of(*high);
                 if (*high as usize) < low || !same {
                     continue;
                 }
@@ -122,7 +117,7 @@ impl Motions {
                 let faces = common.filter(|c| c.kind(shape.space) == EntityKind::Face);
                 if span.rank() < all.rank() && shape.primal.edges && !shape.primal.faces {
                     for face in faces {
-                        averaged.push(u64::from(low as u32) << 32 | u64::from(*high));
+                        averaged.insert((low as u32, *high));
                         span.add(motions.mean(&face.dofs), SEEN);
                         held.push(motions.mean(&face.dofs));
                     }
@@ -148,9 +143,13 @@ impl Motions {
                 }
             }
         }
-        let averaged = gather_all(session.comm(), &averaged).concat();
-        let pair = |w: &u64| ((w >> 32) as u32, *w as u32);
-        (averaged.iter().map(pair).collect(), nodes)
+        let mut outgoing = vec![Vec::new(); session.size()];
+        for &(low, high) in &averaged {
+            outgoing[sharers.owners.of(high)].push(u64::from(low) << 32 | u64::from(high));
+        }
+        let received = exchange_words(session.comm(), outgoing).concat();
+        averaged.extend(received.iter().map(|w| ((w >> 32) as u32, *w as u32)));
+        (averaged, nodes)
     }
 }
 
@@ -224,8 +223,7 @@ fn badly_seen(motions: &Shared, components: usize, held: &[Vec<f64>]) -> Option<
 
 /// Decisions that precede the choice of constraints.
 pub struct Shape {
-    /// Body of every subdomain.
-    pub body_of: Vec<usize>,
+    pub bodies: Bodies,
     /// Whether the problem is three-dimensional.
     pub space: bool,
     /// Constraints that the user wants.

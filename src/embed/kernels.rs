@@ -1,10 +1,11 @@
 //! The host's motions without energy: restricted to subdomains, and an orthogonal basis for every body.
 
 use super::parts::Part;
-use crate::parallel::exchange::{highest, sum_all};
+use crate::parallel::exchange::{exchange_words, highest};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use std::collections::HashMap;
 
 /// A vector is linearly dependent if orthogonalisation shortens it to less than this fraction.
 const DEPENDENT: f64 = 1e-8;
@@ -69,25 +70,46 @@ pub fn orthogonal(columns: &Columns) -> Columns {
 }
 
 /// Replaces the columns of every part by combinations that are orthogonal over the whole body, with entries of order
-/// one. All parts of a body use the same combinations. Collective.
-pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, columns: &mut [Columns]) {
+/// one. All parts of a body use the same combinations: some rank adds up the products of all columns of a body, in the
+/// order of its parts. Collective.
+pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [Columns]) {
     let k = columns.iter().map(Vec::len).max().unwrap_or(0);
     let k = highest(session.comm(), k as f64) as usize;
-    let width = k * k + 1;
-    let mut gram = vec![0.0; n_bodies * width];
+    let (size, width) = (session.size(), k * k + 1);
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
     for (&body, list) in body_of.iter().zip(columns.iter()) {
-        let mine = &mut gram[body * width..(body + 1) * width];
+        let mut gram = vec![0.0; width];
         for (a, x) in list.iter().enumerate() {
             for (b, y) in list.iter().enumerate() {
-                mine[a + b * k] += x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+                gram[a + b * k] = x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
             }
         }
-        mine[k * k] += list.first().map_or(0.0, |x| x.len() as f64);
+        gram[k * k] = list.first().map_or(0.0, |x| x.len() as f64);
+        let words = &mut outgoing[body % size];
+        words.push(body as u64);
+        words.extend(gram.iter().map(|x| x.to_bits()));
     }
-    sum_all(session.comm(), &mut gram);
+    let received = exchange_words(session.comm(), outgoing);
+    let mut sums: HashMap<u64, Vec<f64>> = HashMap::new();
+    for record in received.iter().flat_map(|w| w.chunks_exact(1 + width)) {
+        let sum = sums.entry(record[0]).or_insert_with(|| vec![0.0; width]);
+        let terms = sum.iter_mut().zip(&record[1..]);
+        terms.for_each(|(s, x)| *s += f64::from_bits(*x));
+    }
+    let reply = |words: &Vec<u64>| -> Vec<u64> {
+        let bodies = words
+            .chunks_exact(1 + width)
+            .map(|record| &sums[&record[0]]);
+        bodies.flatten().map(|x| x.to_bits()).collect()
+    };
+    let answers = exchange_words(session.comm(), received.iter().map(reply).collect());
+    let mut next = vec![0; size];
     for (&body, list) in body_of.iter().zip(columns) {
-        let mine = &gram[body * width..(body + 1) * width];
-        *list = combined(list, &combinations(mine, k), mine[k * k]);
+        let at = &mut next[body % size];
+        let words = &answers[body % size][*at..*at + width];
+        *at += width;
+        let gram: Vec<f64> = words.iter().map(|&w| f64::from_bits(w)).collect();
+        *list = combined(list, &combinations(&gram, k), gram[k * k]);
     }
 }
 

@@ -9,6 +9,10 @@
 //! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
 //! and enough primal constraints that no subdomain floats in its body (`hold`).
 //!
+//! The host's rows come from any rank: the owners of their dofs say where the dofs are and which rows are connected
+//! (`touched`), the rows go to the ranks that take them (`placed`), values of known dofs follow at each solve
+//! (`known_dofs`).
+//!
 //! What follows from patterns and numbers alone stays in a `frame`: with other entries in the same matrices, other rows
 //! or other gaps (`again`) no more is done than they ask for, and `work` counts it.
 
@@ -19,11 +23,13 @@ pub(crate) mod contact;
 pub(crate) mod frame;
 pub(crate) mod hold;
 pub(crate) mod kernels;
+pub(crate) mod known_dofs;
 pub(crate) mod motions;
 pub(crate) mod nullspace;
 pub(crate) mod partition;
 pub(crate) mod parts;
 pub(crate) mod pieces;
+pub(crate) mod placed;
 pub(crate) mod rows;
 pub(crate) mod shares;
 pub(crate) mod sharing;
@@ -31,6 +37,7 @@ pub(crate) mod solver;
 pub(crate) mod states;
 pub(crate) mod subdomains;
 pub(crate) mod torn;
+pub(crate) mod touched;
 pub(crate) mod work;
 
 pub use frame::Local;

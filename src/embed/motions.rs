@@ -16,7 +16,7 @@ use super::nullspace::{annihilates, kernel, Indefinite};
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::parallel::exchange::{any, exchange_words, gather_all};
+use crate::parallel::exchange::{any, exchange_words};
 use crate::petsc::Session;
 use crate::{Error, Result};
 
@@ -36,10 +36,9 @@ pub struct Motions {
     bases: Vec<Columns>,
     /// Components of the field.
     pub components: usize,
-    /// For every subdomain of all ranks, whether it has motions beyond the bases.
-    pub loose: Vec<bool>,
-    /// Number of motions of every subdomain of all ranks.
-    pub count: Vec<usize>,
+    /// For every subdomain of this rank and their neighbours, the number of motions, and whether there are others
+    /// beyond the bases.
+    around: HashMap<u32, (usize, bool)>,
     /// Where the bases differ between subdomains: for every part, by higher neighbour, the motions of either side at
     /// the shared dofs. [shared dof][motion], orthogonal.
     pairs: Option<Vec<HashMap<u32, Columns>>>,
@@ -91,16 +90,16 @@ impl Motions {
         };
         let own = any(session.comm(), useless);
         let bases = if own { found } else { known };
-        let counts: Vec<u64> = bases.iter().map(|b| b.len() as u64).collect();
-        let counts = gather_all(session.comm(), &counts).concat();
-        let beyond: Vec<u64> = beyond.iter().map(|&b| u64::from(b && !own)).collect();
-        let beyond = gather_all(session.comm(), &beyond).concat();
+        let facts = bases.iter().zip(beyond);
+        let facts =
+            facts.map(|(basis, beyond)| (basis.len() as u64) << 1 | u64::from(beyond && !own));
+        let around = sharers.around(session, &facts.collect::<Vec<u64>>());
+        let of_word = |(s, w): (u32, u64)| (s, ((w >> 1) as usize, w & 1 == 1));
         let pairs = own.then(|| pairs(session, sharers, &bases));
         let motions = Motions {
             bases,
             components: torn.block_size,
-            loose: beyond.iter().map(|&b| b == 1).collect(),
-            count: counts.iter().map(|&n| n as usize).collect(),
+            around: around.into_iter().map(of_word).collect(),
             pairs,
         };
         Ok((motions, modes.filter(|_| !own)))
@@ -122,10 +121,15 @@ impl Motions {
         }
     }
 
+    /// Whether a subdomain of this rank, or a neighbour, has motions beyond the bases.
+    pub fn is_loose(&self, subdomain: usize) -> bool {
+        self.around[&(subdomain as u32)].1
+    }
+
     /// How many motions the dofs that subdomains `low` and `high` share must see, so that neither moves without the
     /// other.
     pub fn needed(&self, low: usize, high: usize) -> usize {
-        let [a, b] = [self.count[low], self.count[high]];
+        let [a, b] = [low, high].map(|s| self.around[&(s as u32)].0);
         // A basis of known motions may be smaller where a part has few dofs. Kernels of matrices are smaller where
         // something holds the part; its neighbour has to be held all the same.
         if self.pairs.is_some() {
@@ -156,14 +160,12 @@ fn norm(x: &[f64]) -> f64 {
 /// For every part, by higher neighbour, an orthogonal basis of the motions of both at the dofs that they share.
 /// Collective.
 fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap<u32, Columns>> {
-    let firsts = gather_all(session.comm(), &[sharers.first as u64]).concat();
-    let rank_of = |s: u32| firsts.partition_point(|&f| f <= u64::from(s)) - 1;
     // Both sides list the shared dofs by increasing global number. The higher one sends its motions, column by column.
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
     for (j, basis) in bases.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for (low, dofs) in sharers.neighbours[j].iter().filter(|n| n.0 < me) {
-            let words = &mut outgoing[rank_of(*low)];
+            let words = &mut outgoing[sharers.owners.of(*low)];
             let columns = basis.len() as u64;
             words.extend([u64::from(*low), u64::from(me), columns, dofs.len() as u64]);
             for x in basis {

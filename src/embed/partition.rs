@@ -1,11 +1,11 @@
 //! Groups of subdomains where the host names none: a partition of the subdomain graph, weighted by common dofs.
 //!
-//! The graph is small (one vertex for each subdomain) and known to all ranks. The first rank partitions it: the groups
-//! do not depend on the distribution of subdomains over ranks.
+//! The graph is small (one vertex for each subdomain), and all ranks get it; where the host names bodies none does. The
+//! first rank partitions it: the groups do not depend on the distribution of subdomains over ranks.
 
-use super::bodies::bodies;
 use super::hold::Bond;
-use crate::parallel::exchange::sum_all;
+use crate::linalg::union_find::UnionFind;
+use crate::parallel::exchange::{gather_all, sum_all};
 use crate::petsc::{partition as by_petsc, Options, Session};
 use crate::Result;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,10 +18,11 @@ pub fn partitions() -> usize {
     PARTITIONS.load(Ordering::Relaxed)
 }
 
-/// `parts` groups of about equal size. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning
-/// of this type makes them. Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow
-/// groups here. Among candidates with the right number of connected groups, the one with the fewest dofs in common
-/// between groups is taken, since neighbours constrain an elongated group only weakly. Collective.
+/// `parts` groups of about equal size of all `n` subdomains; `mine` has the bonds whose lower subdomain is on this
+/// rank. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning of this type makes the groups.
+/// Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow groups here. Among candidates
+/// with the right number of connected groups, the one with the fewest dofs in common between groups is taken, since
+/// neighbours constrain an elongated group only weakly. Collective.
 ///
 /// # Errors
 /// PETSc's own.
@@ -29,9 +30,10 @@ pub fn partition(
     session: &Session,
     prefix: &str,
     n: usize,
-    bonds: &[Bond],
+    mine: &[Bond],
     parts: usize,
 ) -> Result<Vec<u64>> {
+    let bonds = &everywhere(session, mine)[..];
     PARTITIONS.fetch_add(usize::from(session.rank() == 0), Ordering::Relaxed);
     let chosen = Options::new(session, prefix).has("mat_partitioning_type")?;
     let found = if session.rank() == 0 && parts > 1 {
@@ -47,7 +49,7 @@ pub fn partition(
         candidates.extend([false, true].map(|rings| grown(n, bonds, parts, rings)));
     }
     let score = |group: &Vec<u64>| -> (usize, usize) {
-        let n_bodies = bodies(group, bonds).iter().max().map_or(0, |b| b + 1);
+        let n_bodies = connected(group, bonds).iter().max().map_or(0, |b| b + 1);
         let cut = bonds.iter().filter(|b| group[b.low] != group[b.high]);
         (n_bodies.abs_diff(parts), cut.map(|b| b.shared).sum())
     };
@@ -59,6 +61,43 @@ pub fn partition(
     };
     sum_all(session.comm(), &mut words);
     Ok(words.iter().map(|&g| g as u64).collect())
+}
+
+/// The bonds of all ranks, on all of them. Collective.
+fn everywhere(session: &Session, mine: &[Bond]) -> Vec<Bond> {
+    let words = mine.iter().flat_map(|b| {
+        let holds = u64::from(b.holds);
+        [b.low as u64, b.high as u64, (b.shared as u64) << 1 | holds]
+    });
+    let words = gather_all(session.comm(), &words.collect::<Vec<u64>>()).concat();
+    let bond = |w: &[u64]| Bond {
+        low: w[0] as usize,
+        high: w[1] as usize,
+        shared: (w[2] >> 1) as usize,
+        holds: w[2] & 1 == 1,
+    };
+    words.chunks_exact(3).map(bond).collect()
+}
+
+/// The body of every subdomain if these are the groups, numbered from 0 by lowest subdomain: a group that is not
+/// connected through bonds that hold becomes several bodies.
+fn connected(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
+    let mut sets = UnionFind::new(group.len());
+    let joins = |b: &&Bond| b.holds && group[b.low] == group[b.high];
+    for bond in bonds.iter().filter(joins) {
+        sets.join(bond.low, bond.high);
+    }
+    let mut next = 0..;
+    let mut body_of: Vec<usize> = Vec::with_capacity(group.len());
+    for s in 0..group.len() {
+        // The representative of a set is its lowest member, which comes before the others.
+        let body = match sets.find(s) {
+            lowest if lowest < s => body_of[lowest],
+            _ => next.next().expect("numbers do not end"),
+        };
+        body_of.push(body);
+    }
+    body_of
 }
 
 /// The bonds that hold as a symmetric graph in compressed rows, weighted by the number of common dofs.

@@ -1,5 +1,6 @@
 //! Ties between bodies: where several bodies share a global dof, their displacements are equal.
 
+use super::bodies::Bodies;
 use super::contact::Contact;
 use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
@@ -15,7 +16,7 @@ pub fn rows(
     n_global: usize,
     parts: &[Part],
     sharers: &Sharers,
-    body_of: &[usize],
+    bodies: &Bodies,
     contact: &Contact,
 ) -> Vec<InterfaceRow> {
     let tie = |a: u64, b: u64, dof: u32| InterfaceRow {
@@ -46,9 +47,9 @@ pub fn rows(
             if who.first() != Some(&me) {
                 continue;
             }
-            let bodies = distinct(who.iter().map(|&s| body_of[s as usize] as u64));
-            for (k, &a) in bodies.iter().enumerate() {
-                for &b in &bodies[k + 1..] {
+            let here = distinct(who.iter().map(|&s| bodies.of(s) as u64));
+            for (k, &a) in here.iter().enumerate() {
+                for &b in &here[k + 1..] {
                     match contact.block(dof) {
                         None => out.push(tie(a, b, dof)),
                         Some(root) => {

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use super::parts::Part;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, offsets};
+use crate::parallel::owners::Owners;
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 
@@ -17,6 +19,8 @@ pub struct Sharers {
     pub of: HashMap<u32, Vec<u32>>,
     /// For each local subdomain, its neighbours (increasing) and the local dofs shared with each.
     pub neighbours: Vec<Vec<(u32, Vec<u32>)>>,
+    /// The ranks of subdomains.
+    pub owners: Owners,
 }
 
 impl Sharers {
@@ -66,6 +70,7 @@ impl Sharers {
             n_subdomains,
             of,
             neighbours: Vec::new(),
+            owners: Owners::new(comm, first),
         };
         sharers.neighbours = (0..parts.len())
             .map(|j| sharers.of_part(j, &parts[j]))
@@ -76,6 +81,22 @@ impl Sharers {
     /// The subdomains that hold a dof; empty if only one does.
     pub fn of(&self, dof: u32) -> &[u32] {
         self.of.get(&dof).map_or(&[], |list| &list[..])
+    }
+
+    /// A word of every subdomain of this rank and of their neighbours; `mine` has those of this rank. Collective.
+    pub fn around(&self, session: &Session, mine: &[u64]) -> HashMap<u32, u64> {
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (j, (list, &word)) in self.neighbours.iter().zip(mine).enumerate() {
+            for rank in distinct(list.iter().map(|n| self.owners.of(n.0))) {
+                outgoing[rank].extend([(self.first + j) as u64, word]);
+            }
+        }
+        let received = exchange_words(session.comm(), outgoing).concat();
+        let theirs = received.chunks_exact(2).map(|w| (w[0] as u32, w[1]));
+        (self.first as u32..)
+            .zip(mine.iter().copied())
+            .chain(theirs)
+            .collect()
     }
 
     fn of_part(&self, j: usize, part: &Part) -> Vec<(u32, Vec<u32>)> {

@@ -3,7 +3,7 @@
 use std::cell::{Ref, RefCell};
 use std::collections::HashSet;
 
-use super::bodies::{self, bodies, by_most_dofs, named_groups};
+use super::bodies::{self, by_most_dofs, named_groups, Bodies};
 use super::classes::{classes, in_space};
 use super::contact::Contact;
 use super::frame::Frame;
@@ -18,11 +18,12 @@ use super::sharing::Sharers;
 use super::states::states;
 use super::subdomains::{subdomain, Known};
 use super::torn::{GivenRow, Torn};
+use super::touched::Here;
 use crate::contact::{Observer, State as ContactState};
 use crate::feti::krylov::solve::Look;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
-use crate::parallel::exchange::{gather_all, total};
+use crate::parallel::exchange::total;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::status::Status;
@@ -115,41 +116,32 @@ impl Embedded {
         let modes = torn.modes.as_deref();
         let modes = kernels::modes(modes, &halo, &ghosts, &parts)?;
         let (motions, mut modes) = Motions::new(session, torn, &parts, &sharers, modes)?;
-        let bonds = motions.bonds(session, &parts, &sharers);
-        let named: Vec<u64> = parts.iter().map(|p| p.body.map_or(0, |b| b + 1)).collect();
-        let named: Vec<Option<u64>> = gather_all(session.comm(), &named)
-            .concat()
-            .iter()
-            .map(|&b| b.checked_sub(1))
-            .collect();
+        let bonds = motions.bonds(&parts, &sharers);
         let n = sharers.n_subdomains;
         let given = torn.pieces.iter().filter(|p| p.is_coupled()).count();
         let given = total(session.comm(), given as f64) as usize;
-        let group = match named_groups(&named)? {
+        let group = match named_groups(session, sharers.first, &parts)? {
             Some(group) => group,
-            None => partition(
-                session,
-                &settings.prefix,
-                n,
-                &bonds,
-                bodies::number(wanted, given, n),
-            )?,
+            None => {
+                let wanted = bodies::number(wanted, given, n);
+                let all = partition(session, &settings.prefix, n, &bonds, wanted)?;
+                all[sharers.first..sharers.first + parts.len()].to_vec()
+            }
         };
-        let body_of = bodies(&group, &bonds);
-        let n_bodies = body_of.iter().max().map_or(0, |b| b + 1);
+        let bodies = Bodies::new(session, &sharers, &group, &bonds);
+        let n_bodies = bodies.n;
         if n_bodies == 0 {
             return Err(Error::input(
                 "every row of the operator has its diagonal only, expected unknowns that are coupled",
             ));
         }
-        let mine = &body_of[sharers.first..sharers.first + parts.len()];
         if let Some(columns) = &mut modes {
-            kernels::over_bodies(session, mine, n_bodies, columns);
+            kernels::over_bodies(session, &bodies.mine, columns);
         }
         let classes = classes(session, torn, &parts, &sharers);
         let shape = Shape {
             space: in_space(session, &classes),
-            body_of,
+            bodies,
             primal,
         };
         let (averaged, mut nodes) =
@@ -158,16 +150,25 @@ impl Embedded {
             let wanted = |i: &u32| torn.primal.contains(&part.dofs[*i as usize]);
             nodes.extend((0..part.dofs.len() as u32).filter(wanted));
         }
-        let mine = &shape.body_of[sharers.first..sharers.first + parts.len()];
         let known = states.iter().filter(|(_, s)| !s.is_free());
         let known: HashSet<u32> = known.map(|(dof, _)| *dof).collect();
-        let (n, body_of) = (torn.n_global, &shape.body_of);
-        let contact = Contact::new(session, n, &torn.rows, &parts, &known, mine)?;
-        let mut rows = rows(session, n, &parts, &sharers, body_of, &contact);
+        let here = Here {
+            layout: &torn.layout,
+            ghosts: &ghosts,
+            halo: &halo,
+            known: &known,
+            parts: &parts,
+            body_of: &shape.bodies.mine,
+        };
+        let contact = Contact::new(session, &torn.rows, &here)?;
+        let (n, bodies) = (torn.n_global, &shape.bodies);
+        let mut rows = rows(session, n, &parts, &sharers, bodies, &contact);
         let n_ties = rows.len();
         rows.extend(contact.rows());
         let columns = |j: usize| {
-            let known = modes.as_ref().filter(|_| !motions.loose[sharers.first + j]);
+            let known = modes
+                .as_ref()
+                .filter(|_| !motions.is_loose(sharers.first + j));
             known.map(|m| m[j].clone())
         };
         let shares = Shares::new(session, torn, &parts, &states, (&ghosts, &halo))?;
@@ -210,7 +211,7 @@ impl Embedded {
                 rows: rows_of_pieces,
                 parts,
                 sharers,
-                body_of: shape.body_of,
+                bodies: shape.bodies,
                 motions: kernels,
             },
             shares,

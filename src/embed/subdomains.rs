@@ -23,7 +23,7 @@ pub struct Known<'a> {
 
 /// The subdomain, without a load; `n_global` is the number of global dofs. The matrix is taken out of the part.
 pub fn subdomain(n_global: usize, part: &mut Part, shape: &Shape, known: Known) -> Subdomain {
-    let body = shape.body_of[known.index];
+    let body = shape.bodies.of(known.index as u32);
     let (vertices, others): (Vec<&Class>, Vec<&Class>) =
         known.classes.iter().partition(|c| c.is_vertex());
     let vertices = vertices.iter().flat_map(|c| &c.dofs);

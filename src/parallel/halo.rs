@@ -6,7 +6,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::clock::{self, Phase};
-use super::exchange::{exchange_words, gather_all};
+use super::exchange::exchange_words;
+use super::owners::Owners;
 use super::traffic::{self, Traffic};
 use crate::linalg::sorted::distinct;
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
@@ -92,12 +93,10 @@ fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffi
     if size == 1 {
         return Default::default();
     }
-    let starts: Vec<u64> = gather_all(comm, &[first as u64]).concat();
+    let owners = Owners::new(comm, first);
     let mut wanted = vec![0u64; size];
     for &g in ghosts {
-        // The owner is the last rank that starts at or before the entry: a rank without entries starts where the next
-        // one does.
-        wanted[starts.partition_point(|&s| s <= u64::from(g)) - 1] += 1;
+        wanted[owners.of(g)] += 1;
     }
     wanted[rank] = 0;
     let asked = wanted.iter().map(|&n| vec![n]).collect();

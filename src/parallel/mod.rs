@@ -7,6 +7,7 @@ pub mod exchange;
 pub mod halo;
 #[cfg(feature = "cli")]
 pub(crate) mod meter;
+pub mod owners;
 pub mod post;
 pub mod team;
 pub mod traffic;

@@ -33,6 +33,18 @@ fn bars_by_raw_arrays() {
 }
 
 #[test]
+fn rows_of_a_block_come_from_all_ranks() {
+    let scratch = Scratch::new("capi-rows");
+    let program = Program::linked("mpicc", &scratch, "tests/plugin/rows.c");
+    for (ranks, shift) in [(1, 0), (2, 0), (2, 1), (3, 1), (4, 0), (4, 3), (9, 5)] {
+        let options = "-fetifeti_ksp_rtol 1e-12 -malloc_dump";
+        let out = program.run(ranks, &format!("-shift {shift} {options}"));
+        assert_eq!(out.code, 0, "{ranks} ranks, {shift}: {}", out.all());
+        assert!(out.stdout.trim_end().ends_with("ok"), "{}", out.all());
+    }
+}
+
+#[test]
 fn mistakes_are_sentences() {
     let scratch = Scratch::new("capi-wrong");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/capi.c");

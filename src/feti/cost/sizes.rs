@@ -14,6 +14,7 @@ use crate::feti::subdomain::which::OperatorForm;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange_words, highest, sum_all};
 use crate::parallel::team::Team;
+use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -50,14 +51,18 @@ pub struct Sizes {
 
 impl Sizes {
     /// Counts the sizes with the chosen constraints. Collective.
+    ///
+    /// # Errors
+    /// Numbers of dofs, subdomains or bodies that make no problem; the same error on all ranks.
     pub fn with(
-        comm: &SimpleCommunicator,
+        session: &Session,
         problem: &Substructures,
         team: &Team,
         constraints: Primal,
     ) -> Result<Sizes> {
-        entities::check(problem, constraints)?;
-        location::check(comm, problem)?;
+        let comm = session.comm();
+        session.agree(entities::check(problem, constraints))?;
+        session.agree(location::check(comm, problem))?;
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);

@@ -215,7 +215,8 @@ impl PrimalSpace {
         let stiffness = self.local_stiffness(problem, locals);
         let mut owned = std::mem::take(&mut self.owned);
         for body in &mut owned {
-            let stiffness = stiffness.get(&body.body).copied().unwrap_or_default();
+            // The owner of a body has a subdomain of it.
+            let stiffness = stiffness[&body.body];
             let of = |messages: &BTreeMap<usize, Vec<u64>>| {
                 messages.get(&body.body).cloned().unwrap_or_default()
             };

@@ -29,7 +29,8 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{any, exchange, gather_all, max_all};
+use crate::parallel::exchange::{any, exchange, max_all};
+use crate::parallel::owners::Owners;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
@@ -309,10 +310,7 @@ impl NaturalCoarse {
     /// Assembles [`all`](Self::all). Collective.
     fn all_rows(&self, stiffness: &Stiffness) -> Rows {
         let (comm, jump) = (stiffness.comm(), &stiffness.jump);
-        let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
-            .iter()
-            .map(|w| w[0] as u32)
-            .collect();
+        let owners = Owners::new(comm, jump.first);
         let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
         let largest = self.largest(comm);
         for (j, kernel) in self.kernels.iter().enumerate() {
@@ -320,8 +318,7 @@ impl NaturalCoarse {
             for &(e, full) in columns.contact {
                 let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
                 let row = jump.ghosts[ghost as usize];
-                // The last rank that starts at or before the row. A rank without rows starts where the next one does.
-                let to = starts.partition_point(|&s| s <= row) - 1;
+                let to = owners.of(row);
                 for c in 0..kernel.cols {
                     let col = self.first_column[j] + c;
                     let value = kernel.get(at as usize, c);

@@ -1,6 +1,9 @@
 //! Unit tests of `src/embed/bodies.rs`.
 
 use super::*;
+use crate::linalg::csr::Csr;
+use crate::parallel::owners::Owners;
+use crate::testing::with_session;
 
 fn bond(low: usize, high: usize, holds: bool) -> Bond {
     Bond {
@@ -9,6 +12,24 @@ fn bond(low: usize, high: usize, holds: bool) -> Bond {
         shared: 9,
         holds,
     }
+}
+
+/// The bodies of subdomains on one rank.
+fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
+    let (group, bonds) = (group.to_vec(), bonds.to_vec());
+    with_session(move |session| {
+        let sharers = Sharers {
+            first: 0,
+            n_subdomains: group.len(),
+            of: HashMap::new(),
+            neighbours: vec![Vec::new(); group.len()],
+            owners: Owners::new(session.comm(), 0),
+        };
+        let found = Bodies::new(session, &sharers, &group, &bonds);
+        assert_eq!(found.n, found.mine.iter().max().unwrap() + 1);
+        assert!((0..group.len()).all(|s| found.of(s as u32) == found.mine[s]));
+        found.mine
+    })
 }
 
 #[test]
@@ -26,9 +47,23 @@ fn what_does_not_hold_makes_no_body() {
 
 #[test]
 fn all_are_named_or_none() {
-    assert!(named_groups(&[Some(1), None]).is_err());
-    assert_eq!(named_groups(&[None, None]).unwrap(), None);
-    assert_eq!(named_groups(&[Some(4), Some(1)]).unwrap(), Some(vec![4, 1]));
+    let groups = |named: &[Option<u64>]| {
+        let part = |&body: &Option<u64>| Part {
+            body,
+            k: Csr::default(),
+            dofs: Vec::new(),
+            known: Vec::new(),
+        };
+        let parts: Vec<Part> = named.iter().map(part).collect();
+        with_session(move |session| {
+            named_groups(session, 5, &parts).map_err(|error| error.to_string())
+        })
+    };
+    assert!(groups(&[Some(1), None])
+        .unwrap_err()
+        .contains("subdomain 6 was given no body"));
+    assert_eq!(groups(&[None, None]).unwrap(), None);
+    assert_eq!(groups(&[Some(4), Some(1)]).unwrap(), Some(vec![4, 1]));
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn parted(n: usize, bonds: &[Bond], parts: usize) -> Vec<u64> {
 fn groups_are_equal_and_connected() {
     for (w, h, parts) in [(4, 4, 2), (4, 4, 4), (6, 4, 3), (3, 3, 2), (5, 1, 2)] {
         let group = parted(w * h, &grid(w, h), parts);
-        let body = bodies(&group, &grid(w, h));
+        let body = connected(&group, &grid(w, h));
         assert_eq!(body.iter().max().unwrap() + 1, parts, "{group:?}");
         for b in 0..parts {
             let size = body.iter().filter(|&&x| x == b).count();

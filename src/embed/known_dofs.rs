@@ -1,0 +1,47 @@
+//! The values of known dofs in rows, from the ranks that have them to those that take the rows.
+
+use std::collections::HashMap;
+
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::exchange_words;
+use crate::petsc::Session;
+
+/// The known dofs in the rows that this rank takes.
+pub struct KnownDofs {
+    /// (rank that has the value, dof), increasing.
+    wanted: Vec<(usize, u32)>,
+    /// The dofs whose values each rank takes from this one.
+    given: Vec<Vec<u32>>,
+}
+
+impl KnownDofs {
+    /// `wanted` lists ranks that have values, and dofs. Collective.
+    pub fn new(session: &Session, wanted: impl Iterator<Item = (usize, u32)>) -> KnownDofs {
+        let wanted = distinct(wanted);
+        let mut outgoing = vec![Vec::new(); session.size()];
+        for &(rank, dof) in &wanted {
+            outgoing[rank].push(u64::from(dof));
+        }
+        let asked = exchange_words(session.comm(), outgoing);
+        let dofs = |words: Vec<u64>| words.iter().map(|&w| w as u32).collect();
+        KnownDofs {
+            wanted,
+            given: asked.into_iter().map(dofs).collect(),
+        }
+    }
+
+    /// The place of a dof in the result of [`fetch`](Self::fetch).
+    pub fn place(&self, rank: usize, dof: u32) -> usize {
+        let place = self.wanted.binary_search(&(rank, dof));
+        place.expect("the dof is wanted")
+    }
+
+    /// The values; `here` has those of this rank's known dofs. Collective.
+    pub fn fetch(&self, session: &Session, here: &HashMap<u32, f64>) -> Vec<f64> {
+        let value = |dof: &u32| here[dof].to_bits();
+        let values = |dofs: &Vec<u32>| dofs.iter().map(value).collect();
+        let outgoing = self.given.iter().map(values).collect();
+        let words = exchange_words(session.comm(), outgoing).concat();
+        words.into_iter().map(f64::from_bits).collect()
+    }
+}
