@@ -53,9 +53,24 @@ pub fn command(program: &str) -> Command {
     command
 }
 
+/// A command that starts several ranks, as `command`; it waits until no other test has any, in this process or another.
+/// Ranks that wait for a message look for it all the time: those of several tests take the cores from each other, and a
+/// run of six seconds took a hundred.
+pub fn in_turn(program: &str) -> Command {
+    let own = std::env::current_exe().expect("the test knows its own path");
+    let mut turn = command("flock");
+    turn.arg("--no-fork")
+        .arg(own.with_file_name("several-ranks.lock"))
+        .arg(program);
+    turn
+}
+
 /// `mpirun -n ranks program args` with these extra environment variables.
 pub fn mpirun(ranks: usize, program: &str, args: &[&str], env: &[(&str, &str)]) -> Output {
-    let mut command = command("mpirun");
+    let mut command = match ranks {
+        1 => command("mpirun"),
+        _ => in_turn("mpirun"),
+    };
     command
         .arg("-n")
         .arg(ranks.to_string())

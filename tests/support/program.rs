@@ -13,10 +13,14 @@ pub fn run_fetifeti(ranks: usize, args: &[&str]) -> Output {
     mpi::mpirun(ranks, PATH, args, &[])
 }
 
-/// `fetifeti args` without mpirun.
+/// `fetifeti args` without mpirun. Comparisons start ranks themselves.
 pub fn fetifeti(args: &[&str]) -> Output {
     let start = Instant::now();
-    let out = mpi::command(PATH)
+    let mut command = match args.first() {
+        Some(&("compare" | "bench")) => mpi::in_turn(PATH),
+        _ => mpi::command(PATH),
+    };
+    let out = command
         .args(args)
         .stdin(Stdio::null())
         .output()
