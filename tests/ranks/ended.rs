@@ -6,7 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::faults::whole;
-use crate::support::mpi::{command, Scratch};
+use crate::support::mpi::{command, of_ranks, Scratch};
 use crate::support::program::PATH;
 use fetifeti::checkpoint::file::read;
 
@@ -27,7 +27,7 @@ impl Run {
         let mut run = match ranks {
             1 => command(PATH),
             _ => {
-                let mut run = command("mpirun");
+                let mut run = of_ranks("mpirun");
                 run.args(["-n", &ranks.to_string(), PATH]);
                 run
             }

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::OnceLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -53,24 +54,36 @@ pub fn command(program: &str) -> Command {
     command
 }
 
-/// A command that starts several ranks, as `command`; it waits until no other test has any, in this process or another.
-/// Ranks that wait for a message look for it all the time: those of several tests take the cores from each other, and a
-/// run of six seconds took a hundred.
-pub fn in_turn(program: &str) -> Command {
-    let own = std::env::current_exe().expect("the test knows its own path");
-    let mut turn = command("flock");
-    turn.arg("--no-fork")
-        .arg(own.with_file_name("several-ranks.lock"))
-        .arg(program);
-    turn
+/// As `command`, for a program that starts ranks: they sleep where they wait. Beside two programs that compute, a test
+/// of five seconds takes fifteen with that, and 140 without.
+pub fn of_ranks(program: &str) -> Command {
+    let mut command = command(program);
+    command.env("LD_PRELOAD", patient());
+    command
+}
+
+/// The library of `patient.c`, which is built beside the tests.
+fn patient() -> &'static Path {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(|| {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/patient.c");
+        let own = std::env::current_exe().expect("the test knows its own path");
+        let (name, pid) = ("patient.so", std::process::id());
+        let fresh = own.with_file_name(format!("{name}.{pid}"));
+        let mut compiler = Command::new("cc");
+        compiler.args(["-O2", "-shared", "-fPIC", "-o"]);
+        let status = compiler.arg(&fresh).arg(&source).status();
+        assert!(status.is_ok_and(|s| s.success()), "{source:?} can be built");
+        // Other tests may be doing the same.
+        let path = own.with_file_name(name);
+        fs::rename(&fresh, &path).expect("a file can be renamed");
+        path
+    })
 }
 
 /// `mpirun -n ranks program args` with these extra environment variables.
 pub fn mpirun(ranks: usize, program: &str, args: &[&str], env: &[(&str, &str)]) -> Output {
-    let mut command = match ranks {
-        1 => command("mpirun"),
-        _ => in_turn("mpirun"),
-    };
+    let mut command = of_ranks("mpirun");
     command
         .arg("-n")
         .arg(ranks.to_string())

@@ -17,7 +17,7 @@ pub fn run_fetifeti(ranks: usize, args: &[&str]) -> Output {
 pub fn fetifeti(args: &[&str]) -> Output {
     let start = Instant::now();
     let mut command = match args.first() {
-        Some(&("compare" | "bench")) => mpi::in_turn(PATH),
+        Some(&("compare" | "bench")) => mpi::of_ranks(PATH),
         _ => mpi::command(PATH),
     };
     let out = command
