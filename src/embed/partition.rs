@@ -20,9 +20,9 @@ pub fn partitions() -> usize {
 
 /// `parts` groups of about equal size of all `n` subdomains; `mine` has the bonds whose lower subdomain is on this
 /// rank. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning of this type makes the groups.
-/// Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow groups here. Among candidates
-/// with the right number of connected groups, the one with the fewest dofs in common between groups is taken, since
-/// neighbours constrain an elongated group only weakly. Collective.
+/// Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow groups here. Among
+/// candidates with the right number of connected groups, the one with the fewest dofs in common between groups is
+/// taken, since neighbours constrain an elongated group only weakly. Collective.
 ///
 /// # Errors
 /// PETSc's own.

@@ -1,7 +1,7 @@
 /*
-   Ranks that wait for a message look for it all the time, and Open MPI calls sched_yield() in between. On a machine with
-   more processes than cores the core then goes to whoever computes, for milliseconds, and so does each message. A short
-   sleep leaves the core, too, and ends in time.
+   Ranks that wait for a message look for it all the time, and Open MPI calls sched_yield() in between. On a machine
+   with more processes than cores the core then goes to whoever computes, for milliseconds, and so does each message. A
+   short sleep leaves the core, too, and ends in time.
 */
 #include <time.h>
 
