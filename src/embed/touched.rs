@@ -62,7 +62,6 @@ impl Holder {
 }
 
 /// The dofs that rows touch, as one rank sees them.
-#[derive(Default)]
 pub struct Touched {
     /// Those of the rows that this rank gave, with the block of connected rows of each unknown.
     pub given: HashMap<u32, (Holder, u32)>,
