@@ -1,10 +1,12 @@
-//! Nested dissection: the elimination tree of a subdomain's interior.
+//! Nested dissection: the elimination tree of a subdomain's interior, or of a graph of blocks of dofs.
 //!
 //! The tree's nodes are the supernodes of the factorisation. A leaf is a small set eliminated as one dense front; an
 //! inner node is the separator of its two children. Sets are cut at the median of a coordinate, which gives orderings
 //! of METIS quality on boxes at no cost. Without coordinates, sets are cut by the breadth-first distance from a far
 //! node. The separator is the smallest one that the cut allows (`cover.rs`): it is one layer of nodes, even where the
-//! mesh is distorted and the cut runs to and fro between two layers.
+//! mesh is distorted and the cut runs to and fro between two layers. Graphs of blocks are cut both ways, and the better
+//! cut is kept: a grid of bodies has smaller diagonal separators than straight ones, unless a straight one takes a part
+//! of each body alone.
 
 use super::cover;
 use crate::linalg::csr::Csr;
@@ -12,6 +14,21 @@ use crate::linalg::csr::Csr;
 /// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
 /// outweighs the fill that cutting further would save.
 const LEAF: usize = 12;
+
+/// The same for blocks of dofs, whose factor is small and is solved with often: below it a front takes more time than
+/// its entries.
+const LEAF_OF_BLOCKS: usize = 48;
+
+/// Cost of a separator of a cut that has everything on one side, relative to one between equal halves.
+const ONE_SIDED: f64 = 5.0;
+
+/// What the vertices of a graph of blocks are.
+pub struct Vertices {
+    /// Number of dofs of each.
+    pub sizes: Vec<usize>,
+    /// Their positions, where they are known.
+    pub at: Option<Vec<[f64; 3]>>,
+}
 
 /// Orders the dofs listed in `interior` of the graph of `k` by nested dissection. Returns the dofs of each supernode,
 /// in the order of elimination (children before parents).
@@ -22,19 +39,24 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Vec<Vec<u32>> {
-    let mut work = Cutting::new(k, coordinates);
+    let mut work = Cutting::new(k, coordinates, None);
     work.dissect(interior.to_vec());
     work.out
 }
 
-/// The part of [`nested_dissection`], without coordinates, that belongs to one of several ranks. The parts of all
-/// ranks, one after the other, are the whole.
+/// The part of the nested dissection of these blocks that belongs to one of several ranks, which are (rank, number).
+/// The parts of all ranks, one after the other, are the whole.
 ///
-/// At each cut the ranks divide in proportion to the dofs: a rank makes the cuts of the sets that lead to its own, and
-/// all of its own. So it looks at 2 n dofs and at its own, and not at n log n.
-pub fn part_of_dissection(k: &Csr, interior: &[u32], rank: usize, ranks: usize) -> Vec<Vec<u32>> {
-    let mut work = Cutting::new(k, None);
-    let (mut set, mut among) = (interior.to_vec(), 0..ranks);
+/// At each cut the ranks divide in proportion to the blocks: a rank makes the cuts of the sets that lead to its own,
+/// and all of its own. So it looks at 2 n blocks and at its own, and not at n log n.
+pub fn part_of_dissection(
+    k: &Csr,
+    blocks: &[u32],
+    vertices: &Vertices,
+    (rank, ranks): (usize, usize),
+) -> Vec<Vec<u32>> {
+    let mut work = Cutting::new(k, vertices.at.as_deref(), Some(&vertices.sizes));
+    let (mut set, mut among) = (blocks.to_vec(), 0..ranks);
     // Separators follow after what they separate.
     let mut separators: Vec<Vec<u32>> = Vec::new();
     while among.len() > 1 {
@@ -74,6 +96,8 @@ type Halves = (Vec<u32>, Vec<u32>, Vec<u32>);
 struct Cutting<'a> {
     k: &'a Csr,
     coordinates: Option<&'a [[f64; 3]]>,
+    /// Number of dofs of each vertex of a graph of blocks.
+    sizes: Option<&'a [usize]>,
     /// The set that a dof belongs to at the moment; `NONE` for dofs outside every live set.
     part: Vec<u32>,
     /// Breadth-first distance, valid inside the set that is being cut.
@@ -83,10 +107,15 @@ struct Cutting<'a> {
 }
 
 impl<'a> Cutting<'a> {
-    fn new(k: &'a Csr, coordinates: Option<&'a [[f64; 3]]>) -> Cutting<'a> {
+    fn new(
+        k: &'a Csr,
+        coordinates: Option<&'a [[f64; 3]]>,
+        sizes: Option<&'a [usize]>,
+    ) -> Cutting<'a> {
         Cutting {
             k,
             coordinates,
+            sizes,
             part: vec![NONE; k.n()],
             distance: vec![0; k.n()],
             out: Vec::new(),
@@ -107,18 +136,39 @@ impl<'a> Cutting<'a> {
 
     /// (lower, upper, separator) of a set; the set itself if it is to be one front.
     fn halves(&mut self, set: Vec<u32>) -> Result<Halves, Vec<u32>> {
-        if set.len() <= LEAF {
+        let is_leaf = match self.sizes {
+            Some(_) => self.n_dofs(&set) <= LEAF_OF_BLOCKS,
+            None => set.len() <= LEAF,
+        };
+        if is_leaf {
             return Err(set);
         }
-        let (lower, upper) = match self.cut_by_coordinate(&set) {
-            Some(cut) => cut,
-            None => match self.cut_by_distance(&set) {
-                Some(cut) => cut,
-                // A dense block cannot be cut: the whole set is one front.
-                None => return Err(set),
-            },
+        let by_coordinate = self.cut_by_coordinate(&set);
+        let by_distance = match self.sizes.is_none() && by_coordinate.is_some() {
+            true => None,
+            false => self.cut_by_distance(&set),
         };
-        Ok(self.separate(lower, upper))
+        let cuts = [by_distance, by_coordinate].into_iter().flatten();
+        let cuts: Vec<Halves> = cuts.map(|(l, u)| self.separate(l, u)).collect();
+        let best = cuts
+            .into_iter()
+            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        // A dense block cannot be cut: the whole set is one front.
+        best.ok_or(set)
+    }
+
+    /// Number of dofs of these vertices.
+    fn n_dofs(&self, set: &[u32]) -> usize {
+        let of = |sizes: &[usize]| set.iter().map(|&v| sizes[v as usize]).sum();
+        self.sizes.map_or(set.len(), of)
+    }
+
+    /// What a cut costs: the size of its separator, more if the halves differ.
+    fn cost(&self, (lower, upper, separator): &Halves) -> f64 {
+        let [l, u, s] = [lower, upper, separator].map(|set| self.n_dofs(set) as f64);
+        let one_sided = (l - u) / (l + u).max(1.0);
+        // Of cuts without a separator the more even one.
+        s.max(0.5) * (1.0 + (ONE_SIDED - 1.0) * one_sided * one_sided)
     }
 
     /// Takes the fewest dofs out of both sides such that no edge joins the two: (lower, upper, separator).
@@ -201,11 +251,7 @@ impl<'a> Cutting<'a> {
         let far = *first.last().expect("the start itself is reached");
         let order = self.breadth_first(set, far);
         if order.len() < set.len() {
-            // The set is not connected: no separator is needed between the component that was reached and the rest.
-            let (reached, rest) = set
-                .iter()
-                .partition(|&&i| self.distance[i as usize] != NONE);
-            return Some((reached, rest));
+            return Some(self.parted(set, &order));
         }
         let level = self.distance[order[order.len() / 2] as usize];
         let last = self.distance[*order.last().expect("not empty") as usize];
@@ -214,6 +260,49 @@ impl<'a> Cutting<'a> {
             .iter()
             .partition(|&&i| self.distance[i as usize] <= level);
         (!lower.is_empty() && !upper.is_empty()).then_some((lower, upper))
+    }
+
+    /// Divides a set that is not connected between its components: no separator is needed. `first` is one of them.
+    fn parted(&mut self, set: &[u32], first: &[u32]) -> (Vec<u32>, Vec<u32>) {
+        let mark = self.next_part;
+        self.next_part += 1;
+        set.iter().for_each(|&i| self.part[i as usize] = mark);
+        let mut lower: Vec<u32> = Vec::new();
+        let mut component = first.to_vec();
+        component.iter().for_each(|&i| self.part[i as usize] = NONE);
+        let mut next = set.iter();
+        loop {
+            // A component that goes far beyond the half stays on the other side, if it is not the first one.
+            let with = lower.len() + component.len();
+            if !lower.is_empty() && 2 * with > set.len() + component.len() {
+                break;
+            }
+            lower.append(&mut component);
+            if 2 * lower.len() >= set.len() {
+                break;
+            }
+            let start = next.find(|&&i| self.part[i as usize] == mark);
+            component.push(*start.expect("the other components"));
+            self.part[component[0] as usize] = NONE;
+            let mut head = 0;
+            while let Some(&i) = component.get(head) {
+                head += 1;
+                for &j in self.k.row(i as usize).0 {
+                    if self.part[j as usize] == mark {
+                        self.part[j as usize] = NONE;
+                        component.push(j);
+                    }
+                }
+            }
+        }
+        let inside = self.next_part;
+        self.next_part += 1;
+        set.iter().for_each(|&i| self.part[i as usize] = NONE);
+        lower.iter().for_each(|&i| self.part[i as usize] = inside);
+        let upper = set.iter().copied();
+        let upper = upper.filter(|&i| self.part[i as usize] == NONE).collect();
+        lower.iter().for_each(|&i| self.part[i as usize] = NONE);
+        (lower, upper)
     }
 
     fn breadth_first(&mut self, set: &[u32], start: u32) -> Vec<u32> {

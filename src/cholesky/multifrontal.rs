@@ -211,7 +211,8 @@ impl<'a> Elimination<'a> {
             let dof = sym.interior[front.start + j] as usize;
             let column = panel.col_mut(j);
             let (col, val) = k.row(dof);
-            for (&i, &v) in col.iter().zip(val) {
+            // The pattern need not have the place of an entry that vanishes.
+            for (&i, &v) in col.iter().zip(val).filter(|e| *e.1 != 0.0) {
                 let p = sym.position[i as usize] as usize;
                 if p >= front.end {
                     column[place[p] as usize] += v;

@@ -17,7 +17,8 @@
 use mpi::topology::SimpleCommunicator;
 
 use crate::feti::jump::operator::Jump;
-use crate::feti::projector::gram::{Gram, Motion};
+use crate::feti::projector::gram::Gram;
+use crate::feti::projector::motion::Motion;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::feti::projector::rows::Rows;
 use crate::parallel::exchange::{any, sum_all};

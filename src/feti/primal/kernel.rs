@@ -125,10 +125,18 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
     if moving == 0 {
         return Dense::zeros(k, 0);
     }
-    let (sigma, v) = decompose(&(stacked(0) * &basis));
+    let residuals = stacked(0);
+    let (sigma, v) = decompose(&(&residuals * &basis));
     let scale = ((factors.len() * k) as f64).sqrt();
     let rank = sigma.iter().filter(|s| **s > FREE * scale).count();
-    let null = &basis * v.get(.., rank..);
+    // Candidates that are motions themselves are the better basis: rows of G have fewer entries
+    // (`projector/blocks.rs`).
+    let own = (0..k).filter(|&c| residuals.col(c).norm_l2() <= FREE * scale);
+    let own: Vec<usize> = own.collect();
+    let null = match moving == k && own.len() == k - rank {
+        true => faer::Mat::from_fn(k, own.len(), |i, j| f64::from(u8::from(i == own[j]))),
+        false => &basis * v.get(.., rank..),
+    };
     let mut out = Dense::zeros(k, moving - rank);
     for j in 0..out.cols {
         for i in 0..k {

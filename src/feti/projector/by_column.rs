@@ -1,6 +1,6 @@
 //! Motions by the columns in which they have coefficients: what a row does to many of them.
 
-use super::gram::Motion;
+use super::motion::Motion;
 
 /// Motions by the columns in which they have coefficients.
 pub struct ByColumn {

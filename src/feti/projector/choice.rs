@@ -5,7 +5,8 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
-use super::gram::{Gram, Motion};
+use super::gram::Gram;
+use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use super::raised::{Row, MOST};
 use super::shape::Shape;

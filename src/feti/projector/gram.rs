@@ -7,6 +7,8 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
+use super::alone::{alone, null_vector};
+use super::motion::{Motion, NOTHING, NOTHING_SOLVED};
 use super::pattern::Pattern;
 use super::raised::Raised;
 use super::shape::Shape;
@@ -15,16 +17,10 @@ use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
-use crate::parallel::exchange::{gather_all, sum_all};
+use crate::parallel::exchange::sum_all;
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;
-
-/// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions, …
-const NOTHING: f64 = 1e-13;
-
-/// … and of solves with many columns.
-pub(super) const NOTHING_SOLVED: f64 = 1e-10;
 
 /// If a step of inverse iteration magnifies by less than the inverse of this, the matrix is regular: of a null vector
 /// that is magnified by 1e13 and more the start would have less than 1e-6.
@@ -36,69 +32,6 @@ const WEIGHTED: f64 = 1e-13;
 
 /// The diagonal entry of a column that is left out: its root divides what other columns have in common with it.
 const OUT: f64 = 1e300;
-
-/// A combination of kernel vectors: (column of R, coefficient), by increasing column.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Motion(pub Vec<(u32, f64)>);
-
-impl Motion {
-    /// The motion with these coefficients, without those below `least` relative to the largest.
-    pub(super) fn above(least: f64, entries: impl Iterator<Item = (u32, f64)> + Clone) -> Motion {
-        let largest = entries.clone().fold(0.0f64, |a, e| a.max(e.1.abs()));
-        Motion(entries.filter(|e| e.1.abs() > least * largest).collect())
-    }
-
-    /// Σ of coefficients times entries of x.
-    pub fn dot(&self, x: &[f64]) -> f64 {
-        self.0.iter().map(|&(c, v)| v * x[c as usize]).sum()
-    }
-
-    /// Σ of the sizes of these products.
-    pub fn size(&self, x: &[f64]) -> f64 {
-        self.0.iter().map(|&(c, v)| (v * x[c as usize]).abs()).sum()
-    }
-
-    /// The largest coefficient.
-    pub fn largest(&self) -> f64 {
-        self.0.iter().fold(0.0, |a, e| a.max(e.1.abs()))
-    }
-
-    /// Σ of the squares of the coefficients.
-    pub fn square(&self) -> f64 {
-        self.0.iter().map(|e| e.1 * e.1).sum()
-    }
-
-    /// α times the motion.
-    pub fn times(&self, alpha: f64) -> Motion {
-        Motion(self.0.iter().map(|&(c, v)| (c, alpha * v)).collect())
-    }
-
-    /// The motion plus α times another one.
-    pub fn plus(&self, alpha: f64, other: &Motion) -> Motion {
-        let mut all: Vec<(u32, f64)> = self.0.clone();
-        all.extend(other.0.iter().map(|&(c, v)| (c, alpha * v)));
-        all.sort_by_key(|e| e.0);
-        let of_column = |s: &[(u32, f64)]| (s[0].0, s.iter().map(|e| e.1).sum());
-        let sums: Vec<(u32, f64)> = all.chunk_by(|a, b| a.0 == b.0).map(of_column).collect();
-        Motion::above(NOTHING, sums.iter().copied())
-    }
-
-    /// x ← x + α times the coefficients.
-    pub fn add(&self, alpha: f64, x: &mut [f64]) {
-        for &(c, v) in &self.0 {
-            x[c as usize] += alpha * v;
-        }
-    }
-
-    /// The work of a row of G on it.
-    pub fn work(&self, columns: &[u32], values: &[f64]) -> f64 {
-        let of = |&c: &u32| match self.0.binary_search_by_key(&c, |e| e.0) {
-            Ok(k) => self.0[k].1,
-            Err(_) => 0.0,
-        };
-        columns.iter().zip(values).map(|(c, g)| g * of(c)).sum()
-    }
-}
 
 /// A factor of A = GᵀG, scaled to a unit diagonal.
 pub(super) enum Factor {
@@ -281,57 +214,6 @@ fn minus_column(team: &Team, a: &Csr, k: u32) -> Vec<f64> {
     }
     sum_all(team.comm(), &mut out);
     out
-}
-
-/// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
-/// diagonal. Each rank looks at the bodies whose rows it has. Collective.
-fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
-    // [column, number of entries, (column, coefficient)…] for each motion.
-    let mut words: Vec<u64> = Vec::new();
-    for body in 0..pattern.n_bodies() {
-        let columns = pattern.columns(body);
-        if columns.is_empty() || !team.has(columns.start as u32) {
-            continue;
-        }
-        let first = columns.start;
-        let block = Dense::from_fn(columns.len(), columns.len(), |i, j| {
-            a.get(first + i, first + j)
-        });
-        let factor = Semidefinite::new(&block);
-        for k in factor.dropped() {
-            let v = null_vector(&block, &factor, k);
-            let entries = (columns.clone()).zip(&v);
-            let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
-            let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
-            words.extend([(first + k) as u64, motion.len() as u64]);
-            words.extend(
-                motion
-                    .iter()
-                    .flat_map(|(c, v)| [u64::from(*c), v.to_bits()]),
-            );
-        }
-    }
-    let all = gather_all(team.comm(), &words).concat();
-    let mut rest = &all[..];
-    let mut out = Vec::new();
-    while let [k, n, tail @ ..] = rest {
-        let (entries, tail) = tail.split_at(2 * *n as usize);
-        let entries = entries.chunks_exact(2);
-        let motion = entries
-            .map(|e| (e[0] as u32, f64::from_bits(e[1])))
-            .collect();
-        out.push((*k as u32, Motion(motion)));
-        rest = tail;
-    }
-    out
-}
-
-/// The v with A v = 0 that belongs to the dropped column `k`.
-fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
-    let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
-    factor.solve(&mut v);
-    v[k] = 1.0;
-    v
 }
 
 /// Leaves a column out.

@@ -2,7 +2,7 @@
 
 use super::balance::KernelLoad;
 use super::columns::KernelColumns;
-use super::gram::Motion;
+use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use crate::substructures::Substructures;
 use crate::{Error, Result};

@@ -5,7 +5,8 @@
 //! slides under a last one which it lifts a little. Inverse iteration finds the vector; mostly a single solve tells
 //! that there is none.
 
-use super::gram::{Factor, Gram, Motion, NOTHING_SOLVED, REGULAR};
+use super::gram::{Factor, Gram, REGULAR};
+use super::motion::{Motion, NOTHING_SOLVED};
 use super::refined::probe;
 use crate::parallel::exchange::sum_all;
 

@@ -1,6 +1,8 @@
 //! The projector P of the floating bodies: G and Gᵀ Q G.
 
+mod alone;
 pub mod balance;
+pub mod blocks;
 pub mod by_column;
 mod choice;
 pub mod columns;
@@ -10,6 +12,7 @@ pub mod graph;
 pub mod gtg;
 pub mod held;
 mod hidden;
+pub mod motion;
 mod motions;
 pub mod natural;
 mod numbers;

@@ -13,6 +13,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::blocks::{positions, Blocks};
 use super::columns::KernelColumns;
 use super::distributed::Distributed;
 use super::gram::Gram;
@@ -142,7 +143,12 @@ impl NaturalCoarse {
             natural.all = natural.all_rows(stiffness);
             let start = natural.columns.start();
             let lists = meeting(comm, &natural.all, &natural.all, start);
-            natural.shape = Some(Shape::new(comm, &lists, start, &natural.sharing()));
+            let order = || {
+                let blocks = Blocks::of_rows(comm, &natural.all, start);
+                (blocks, positions(comm, problem))
+            };
+            let sharing = natural.sharing();
+            natural.shape = Some(Shape::ordered(comm, &lists, start, order, &sharing));
             natural.spread = spread(comm, problem, stiffness);
             natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;

@@ -14,7 +14,8 @@ use std::rc::Rc;
 
 use faer::prelude::Solve;
 
-use super::gram::{Factor, Gram, Motion};
+use super::gram::{Factor, Gram};
+use super::motion::Motion;
 use crate::cholesky::team::Team;
 use crate::linalg::dense::Dense;
 use crate::parallel::clock::{self, Phase};

@@ -182,6 +182,11 @@ impl Rows {
         all.filter(|(_, columns, _)| !columns.is_empty())
     }
 
+    /// The sets of columns that rows have, each increasing.
+    pub fn sets(&self) -> impl Iterator<Item = &[u32]> + '_ {
+        self.groups().map(|(_, columns, _)| columns)
+    }
+
     /// Rows that have the same columns, in these rows and in those of `other`: their numbers, and both sets of columns.
     pub fn alike<'a>(
         &'a self,

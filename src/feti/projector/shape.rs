@@ -5,10 +5,11 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::blocks::Blocks;
 use super::gram::FEW;
 use super::pattern::Pattern;
 use super::rows::Rows;
-use crate::cholesky::dissection::part_of_dissection;
+use crate::cholesky::dissection::{part_of_dissection, Vertices};
 use crate::cholesky::symbolic::Symbolic;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
@@ -54,18 +55,34 @@ impl Shape {
         start: &[usize],
         sharing: &Sharing<'_>,
     ) -> Shape {
+        let whole = || (Blocks::of_bodies(lists, start), None);
+        Shape::ordered(comm, lists, start, whole, sharing)
+    }
+
+    /// The same for matrices with entries only in the blocks that `order` makes, with the positions of the bodies where
+    /// they are known. It is not asked if there are few columns. Collective.
+    pub fn ordered(
+        comm: &SimpleCommunicator,
+        lists: &[Vec<u32>],
+        start: &[usize],
+        order: impl FnOnce() -> (Blocks, Option<Vec<[f64; 3]>>),
+        sharing: &Sharing<'_>,
+    ) -> Shape {
         let r = *start.last().expect("there is an end");
-        let order = || team(comm, lists, start, sharing).into();
-        let team: Option<Rc<Team>> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, order));
+        let team = || {
+            let (blocks, at) = order();
+            team(comm, lists, (&blocks, at), sharing).into()
+        };
+        let team: Option<Rc<Team>> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, team));
         let pattern = match (&team, sharing.rows) {
             (Some(team), Some(rows)) if team.is_whole(comm) => {
                 let columns = distinct(rows.columns().iter().copied());
-                // A rank has all columns of a body or none.
+                // What a rank adds to, and what it has.
                 let here = |body: usize| {
                     let columns_of = start[body] as u32..start[body + 1] as u32;
                     let first = columns.partition_point(|&c| c < columns_of.start);
                     let touched = columns.get(first).is_some_and(|c| columns_of.contains(c));
-                    touched || (!columns_of.is_empty() && team.has(columns_of.start))
+                    touched || columns_of.into_iter().any(|c| team.has(c))
                 };
                 Pattern::new(lists, start, here)
             }
@@ -86,33 +103,38 @@ impl Shape {
     }
 }
 
-/// The order of elimination, and who has which part. Collective.
+/// The order of elimination, and who has which part. `bodies` has for each body those that it meets. Collective.
 fn team(
     comm: &SimpleCommunicator,
-    lists: &[Vec<u32>],
-    start: &[usize],
+    bodies: &[Vec<u32>],
+    (blocks, at): (&Blocks, Option<Vec<[f64; 3]>>),
     sharing: &Sharing<'_>,
 ) -> Team {
-    // Whole bodies are ordered: the columns of one are all coupled.
-    let graph = graph(lists);
-    let columns = |b: u32| start[b as usize]..start[b as usize + 1];
-    let floats = |b: &u32| !columns(*b).is_empty();
+    let graph = graph(&blocks.near);
+    let floats = |b: &u32| !blocks.columns(*b).is_empty();
     // What meets more than half of all bodies comes last: no cut would separate it from anything.
-    let everywhere = |b: &u32| 2 * graph.row(*b as usize).0.len() > graph.n();
-    let (last, floating): (Vec<u32>, Vec<u32>) =
-        (0..graph.n() as u32).filter(floats).partition(everywhere);
-    let mut sets = dissected(comm, &graph, &floating);
+    let body = |b: &u32| blocks.body[*b as usize] as usize;
+    let everywhere = |b: &u32| 2 * bodies[body(b)].len() > bodies.len();
+    let all = 0..blocks.n() as u32;
+    let (last, rest): (Vec<u32>, Vec<u32>) = all.clone().filter(floats).partition(everywhere);
+    let vertices = Vertices {
+        sizes: all.clone().map(|b| blocks.columns(b).len()).collect(),
+        at: at.map(|at| all.map(|b| at[body(&b)]).collect()),
+    };
+    let mut sets = dissected(comm, &graph, &rest, &vertices);
     sets.extend((!last.is_empty()).then_some(last));
-    let r = *start.last().expect("there is an end");
-    let symbolic = Symbolic::with_blocks(&graph, &sets, r, columns);
+    let r = blocks.columns(blocks.n() as u32 - 1).end;
+    let symbolic = Symbolic::with_blocks(&graph, &sets, r, |b| blocks.columns(b));
     let mut home = Vec::new();
-    for (body, &rank) in sharing.home.iter().enumerate() {
-        home.resize(start[body + 1], rank);
+    if !sharing.home.is_empty() {
+        for b in 0..blocks.n() as u32 {
+            home.resize(blocks.columns(b).end, sharing.home[body(&b)]);
+        }
     }
     Team::new(comm, symbolic, sharing.copies, &home)
 }
 
-/// The graph of the bodies, without numbers.
+/// A graph, without numbers.
 fn graph(lists: &[Vec<u32>]) -> Csr {
     let mut out = Csr {
         row_ptr: vec![0],
@@ -126,11 +148,16 @@ fn graph(lists: &[Vec<u32>]) -> Csr {
     out
 }
 
-/// The nested dissection of these bodies, of which each rank makes a part. Collective.
-fn dissected(comm: &SimpleCommunicator, graph: &Csr, bodies: &[u32]) -> Vec<Vec<u32>> {
+/// The nested dissection of these blocks, of which each rank makes a part. Collective.
+fn dissected(
+    comm: &SimpleCommunicator,
+    graph: &Csr,
+    blocks: &[u32],
+    vertices: &Vertices,
+) -> Vec<Vec<u32>> {
     let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
     let mut words: Vec<u64> = Vec::new();
-    for set in part_of_dissection(graph, bodies, rank, ranks) {
+    for set in part_of_dissection(graph, blocks, vertices, (rank, ranks)) {
         words.push(set.len() as u64);
         words.extend(set.iter().map(|&b| u64::from(b)));
     }

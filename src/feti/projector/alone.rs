@@ -1,0 +1,97 @@
+//! Motions of single bodies that nothing holds: most motions that nothing holds are such. They are found in the blocks
+//! of the bodies on the diagonal of GᵀG, before it is factored.
+
+use mpi::traits::Communicator;
+use rustc_hash::FxHashMap;
+
+use super::motion::{Motion, NOTHING_SOLVED};
+use super::pattern::Pattern;
+use crate::cholesky::team::Team;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::{exchange_words, gather_all};
+
+/// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
+/// diagonal. The rank that has the first column of a body looks at it. Collective.
+pub(super) fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
+    let elsewhere = rows_of_others(pattern, team, a);
+    // [column, number of entries, (column, coefficient)…] for each motion.
+    let mut words: Vec<u64> = Vec::new();
+    for body in 0..pattern.n_bodies() {
+        let columns = pattern.columns(body);
+        if columns.is_empty() || !team.has(columns.start as u32) {
+            continue;
+        }
+        let first = columns.start;
+        let block = Dense::from_fn(columns.len(), columns.len(), |i, j| {
+            match elsewhere.get(&(first as u32 + i as u32)) {
+                Some(row) => row[j],
+                None => a.get(first + i, first + j),
+            }
+        });
+        let factor = Semidefinite::new(&block);
+        for k in factor.dropped() {
+            let v = null_vector(&block, &factor, k);
+            let entries = (columns.clone()).zip(&v);
+            let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
+            let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
+            words.extend([(first + k) as u64, motion.len() as u64]);
+            words.extend(
+                motion
+                    .iter()
+                    .flat_map(|(c, v)| [u64::from(*c), v.to_bits()]),
+            );
+        }
+    }
+    let all = gather_all(team.comm(), &words).concat();
+    let mut rest = &all[..];
+    let mut out = Vec::new();
+    while let [k, n, tail @ ..] = rest {
+        let (entries, tail) = tail.split_at(2 * *n as usize);
+        let entries = entries.chunks_exact(2);
+        let motion = entries
+            .map(|e| (e[0] as u32, f64::from_bits(e[1])))
+            .collect();
+        out.push((*k as u32, Motion(motion)));
+        rest = tail;
+    }
+    out
+}
+
+/// Of bodies whose first column this rank has: the rows of their other columns that other ranks have, in the columns
+/// of the body. Collective.
+fn rows_of_others(pattern: &Pattern, team: &Team, a: &Csr) -> FxHashMap<u32, Vec<f64>> {
+    let size = team.comm().size() as usize;
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
+    for body in 0..pattern.n_bodies() {
+        let columns = pattern.columns(body);
+        if columns.is_empty() || team.has(columns.start as u32) {
+            continue;
+        }
+        for row in columns.clone().filter(|&c| team.has(c as u32)) {
+            let to = &mut outgoing[team.place(columns.start as u32).rank as usize];
+            to.extend([row as u64, columns.len() as u64]);
+            to.extend(columns.clone().map(|c| a.get(row, c).to_bits()));
+        }
+    }
+    let mut out = FxHashMap::default();
+    for words in exchange_words(team.comm(), outgoing) {
+        let mut rest = &words[..];
+        while let [row, n, tail @ ..] = rest {
+            let (values, tail) = tail.split_at(*n as usize);
+            let values = values.iter().map(|&w| f64::from_bits(w));
+            out.insert(*row as u32, values.collect());
+            rest = tail;
+        }
+    }
+    out
+}
+
+/// The v with A v = 0 that belongs to the dropped column `k`.
+pub(super) fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
+    let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
+    factor.solve(&mut v);
+    v[k] = 1.0;
+    v
+}

@@ -1,0 +1,70 @@
+//! Rigid motions of bodies as combinations of kernel vectors, most of which do not take part.
+
+/// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions, …
+pub(super) const NOTHING: f64 = 1e-13;
+
+/// … and of solves with many columns.
+pub(super) const NOTHING_SOLVED: f64 = 1e-10;
+
+/// A combination of kernel vectors: (column of R, coefficient), by increasing column.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Motion(pub Vec<(u32, f64)>);
+
+impl Motion {
+    /// The motion with these coefficients, without those below `least` relative to the largest.
+    pub(super) fn above(least: f64, entries: impl Iterator<Item = (u32, f64)> + Clone) -> Motion {
+        let largest = entries.clone().fold(0.0f64, |a, e| a.max(e.1.abs()));
+        Motion(entries.filter(|e| e.1.abs() > least * largest).collect())
+    }
+
+    /// Σ of coefficients times entries of x.
+    pub fn dot(&self, x: &[f64]) -> f64 {
+        self.0.iter().map(|&(c, v)| v * x[c as usize]).sum()
+    }
+
+    /// Σ of the sizes of these products.
+    pub fn size(&self, x: &[f64]) -> f64 {
+        self.0.iter().map(|&(c, v)| (v * x[c as usize]).abs()).sum()
+    }
+
+    /// The largest coefficient.
+    pub fn largest(&self) -> f64 {
+        self.0.iter().fold(0.0, |a, e| a.max(e.1.abs()))
+    }
+
+    /// Σ of the squares of the coefficients.
+    pub fn square(&self) -> f64 {
+        self.0.iter().map(|e| e.1 * e.1).sum()
+    }
+
+    /// α times the motion.
+    pub fn times(&self, alpha: f64) -> Motion {
+        Motion(self.0.iter().map(|&(c, v)| (c, alpha * v)).collect())
+    }
+
+    /// The motion plus α times another one.
+    pub fn plus(&self, alpha: f64, other: &Motion) -> Motion {
+        let mut all: Vec<(u32, f64)> = self.0.clone();
+        all.extend(other.0.iter().map(|&(c, v)| (c, alpha * v)));
+        all.sort_by_key(|e| e.0);
+        let of_column = |s: &[(u32, f64)]| (s[0].0, s.iter().map(|e| e.1).sum());
+        let sums: Vec<(u32, f64)> = all.chunk_by(|a, b| a.0 == b.0).map(of_column).collect();
+        Motion::above(NOTHING, sums.iter().copied())
+    }
+
+    /// x ← x + α times the coefficients.
+    pub fn add(&self, alpha: f64, x: &mut [f64]) {
+        for &(c, v) in &self.0 {
+            x[c as usize] += alpha * v;
+        }
+    }
+
+    /// The work of a row of G on it.
+    pub fn work(&self, columns: &[u32], values: &[f64]) -> f64 {
+        let of = |&c: &u32| match self.0.binary_search_by_key(&c, |e| e.0) {
+            Ok(k) => self.0[k].1,
+            Err(_) => 0.0,
+        };
+        columns.iter().zip(values).map(|(c, g)| g * of(c)).sum()
+    }
+}
