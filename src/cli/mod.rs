@@ -21,6 +21,7 @@ mod plan_tables;
 mod record;
 mod renewed;
 mod searches;
+mod single;
 mod solve;
 mod study;
 mod table1;
@@ -57,7 +58,10 @@ fn start() -> i32 {
         // PETSc starts to say the mistake once for all ranks, and must not read what it may be about.
         std::env::remove_var("PETSC_OPTIONS");
     }
-    let session = match Session::new(&petsc, &parse::usage()) {
+    let quick = single::QuickStart::new();
+    let begun = Session::new(&petsc, &parse::usage());
+    drop(quick);
+    let session = match begun {
         Ok(session) => session,
         Err(error) => {
             eprintln!("Error: {error}");
