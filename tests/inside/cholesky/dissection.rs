@@ -71,8 +71,7 @@ fn the_parts_of_ranks_are_the_whole() {
 
 #[test]
 fn the_better_of_two_cuts_is_kept() {
-    // On a square, a cut by distance from a corner is a diagonal of 30 dofs, one by position a side of 30; on a strip
-    // whose long side runs along neither axis, a cut by position is oblique.
+    // A strip whose positions are turned by 45 degrees: cut by position, its separator is oblique.
     let (k, x) = grid_laplacian(60, 8, 0.0);
     let turned = |p: &[f64; 3]| [p[0] - p[1], p[0] + p[1], 0.0];
     let x: Vec<[f64; 3]> = x.iter().map(turned).collect();
