@@ -17,6 +17,7 @@ mod plan;
 mod renewal;
 mod renewal_obstacles;
 mod report;
+mod single;
 mod sliding;
 mod solve;
 mod table;

@@ -50,9 +50,8 @@ pub fn command(program: &str) -> Command {
         .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
         .env("OMPI_MCA_mpi_yield_when_idle", "1")
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        // To look for networks takes 0.2 s, and the daemon of a process that is alone 0.1 s, thousands of times.
+        // To look for networks takes 0.2 s, thousands of times.
         .env("OMPI_MCA_pml", "ob1")
-        .env("OMPI_MCA_ess_singleton_isolated", "1")
         .env("RUST_BACKTRACE", "0");
     command
 }
