@@ -96,7 +96,7 @@ fn outer(
             match active_set::solve(method, settings, start.as_ref(), observe)? {
                 Ended::Found(found, steps) => {
                     if !found.status.converged() {
-                        ask(method)?;
+                        ask(method, &found.lambda)?;
                     }
                     Ok((found, steps))
                 }
@@ -105,28 +105,29 @@ fn outer(
                     steps,
                     seconds,
                 } => {
-                    ask(method)?;
+                    ask(method, &state.lambda)?;
                     lagrangian::solve(method, settings, state, steps, seconds, observe)
                 }
             }
         }
         ContactType::AugmentedLagrangian => {
-            ask(method)?;
             let state = start.unwrap_or_else(cold);
+            ask(method, &state.lambda)?;
             lagrangian::solve(method, settings, state, Vec::new(), 0.0, observe)
         }
         ContactType::Smalbe => {
-            ask(method)?;
             let state = start.unwrap_or_else(cold);
+            ask(method, &state.lambda)?;
             smalbe::solve(method, settings, state, observe)
         }
     }
 }
 
 /// Returns an error that names bodies which the load pushes away for ever. Few rigid motions are asked about before the
-/// loop, many only here: by a loop that has failed, and by those that would go on for ever. Collective.
-fn ask(method: &LinearMethod) -> Result<()> {
+/// loop, many only here: by a loop that has failed, and by those that would go on for ever, from the λ where they are.
+/// Collective.
+fn ask(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
     let dual = method.dual();
     let load = Loads::new(&method.problem, &dual).kernel;
-    motion::check_many(&method.problem, &dual, &load)
+    motion::check_many(&method.problem, &dual, &load, lambda)
 }

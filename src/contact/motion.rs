@@ -39,27 +39,34 @@ pub const BALANCE: f64 = 1e-9;
 /// As [`check`].
 pub fn check_few(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
     match dual.natural.r <= FEW {
-        true => check(problem, dual, load),
+        true => check(problem, dual, load, &[]),
         false => Ok(()),
     }
 }
 
-/// For a loop that has failed, or does not find the answer by itself: the same with many motions. Collective.
+/// For a loop that has failed, or does not find the answer by itself: the same with many motions. `lambda` is where the
+/// loop has come. Collective.
 ///
 /// # Errors
 /// As [`check`].
-pub fn check_many(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
+pub fn check_many(
+    problem: &Substructures,
+    dual: &Dual,
+    load: &KernelLoad,
+    lambda: &[f64],
+) -> Result<()> {
     match dual.natural.r > FEW {
-        true => check(problem, dual, load),
+        true => check(problem, dual, load, lambda),
         false => Ok(()),
     }
 }
 
-/// Returns an error that names the bodies if the load moves some of them away for ever. Collective.
+/// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
+/// begins at `lambda`. Collective.
 ///
 /// # Errors
 /// Such bodies; PETSc's own errors.
-pub fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
+fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
     let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
     if natural.r == 0 {
         return Ok(());
@@ -69,7 +76,8 @@ pub fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<
         let (columns, free) = directions(dual.comm(), jump, &natural.all, natural.r);
         (nnls(&columns, &load.e, &free).1, BALANCE)
     } else {
-        let found = rigid::outside(dual.comm(), natural, jump, &load.e, 0.1 * NEARLY * size);
+        let wanted = (&load.e[..], 0.1 * NEARLY * size);
+        let found = rigid::outside(dual.comm(), natural, jump, wanted, lambda);
         match found {
             Some(rest) => (rest, NEARLY),
             // The certificate at the end of the loop handles the undecided cases.

@@ -10,9 +10,10 @@
 //! G_Aᵀ k G_A + ε D ends after some steps. Then a ← α, which takes the rest to zero if the rows can carry the load. If
 //! they cannot, α − a tends to a motion that all rows allow and the load drives.
 //!
-//! To the question whether the rows can carry the load neither k nor c matters: k = 1, c = 0. The first λ has the gaps
-//! of the rows, and k_i is the stiffness of the nodes at a row: the solution for bodies that give way at their
-//! surfaces alone.
+//! To the question whether the rows can carry the load neither k nor c matters: k = 1, and c = −λ₊ for the λ of the
+//! loop that asks. Its springs carry at α = 0 what the loop has found, and a few Newton steps take the rest from rows
+//! that pull to others. The first λ has the gaps of the rows, and k_i is the stiffness of the nodes at a row: the
+//! solution for bodies that give way at their surfaces alone.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -28,7 +29,8 @@ const WEAK: f64 = 1e-8;
 
 /// ε of the first round relative to its last value, and its ratio from round to round. Newton's directions are long
 /// where rows let a body loose, and steps short. A large ε first keeps bodies near each other: 8³ blocks take 42 Newton
-/// steps, not 48, a wall of 954 bricks 27, and the sets are nearly right after two rounds.
+/// steps, not 48, a wall of 954 bricks 27, and the sets are nearly right after two rounds. From forces of the loop the
+/// last ε is right at once: 20³ blocks of one element take 8 steps, with a first ε of 1e4 times the last 19.
 const FIRST: f64 = 1e8;
 const FALL: f64 = 1e-2;
 
@@ -45,18 +47,24 @@ const AGAINST: f64 = 1e-6;
 const EVALUATIONS: usize = 50;
 
 /// The part of `e` that the rows cannot carry: none if it is below `enough` everywhere. `None` if this is not decided.
-/// The same on every rank. Collective.
+/// `lambda` has forces on the owned rows that carry much of it, or zeros. The same on every rank. Collective.
 pub fn outside(
     comm: &SimpleCommunicator,
     natural: &NaturalCoarse,
     jump: &Jump,
-    e: &[f64],
-    enough: f64,
+    (e, enough): (&[f64], f64),
+    lambda: &[f64],
 ) -> Option<Vec<f64>> {
-    let n = jump.n_owned;
-    let law = (vec![1.0; n], vec![0.0; n]);
+    let pushes = |(&l, &unilateral): (&f64, &bool)| if unilateral { l.max(0.0) } else { l };
+    let pre: Vec<f64> = lambda
+        .iter()
+        .zip(&jump.inequality)
+        .map(|p| -pushes(p))
+        .collect();
+    let begun = any(comm, pre.iter().any(|c| *c != 0.0));
+    let law = (vec![1.0; jump.n_owned], pre);
     let mut springs = Springs::new(comm, natural, jump, e, &law);
-    match springs.balance(enough) {
+    match springs.balance(enough, begun) {
         (_, Balanced::Carried) => Some(vec![0.0; natural.r]),
         (_, Balanced::Driven(away)) => Some(away),
         (_, Balanced::Undecided) => None,
@@ -84,7 +92,7 @@ pub fn first(
     law: &(Vec<f64>, Vec<f64>),
 ) -> First {
     let mut springs = Springs::new(comm, natural, jump, e, law);
-    let alpha = match springs.balance(enough) {
+    let alpha = match springs.balance(enough, false) {
         (alpha, Balanced::Carried) => alpha,
         (_, Balanced::Driven(away)) => return First::Nowhere(away),
         (_, Balanced::Undecided) => return First::Unknown,
@@ -162,15 +170,17 @@ impl<'a> Springs<'a> {
         }
     }
 
-    /// The motion α at which springs carry the load up to `enough`, if they can. Collective.
-    fn balance(&mut self, enough: f64) -> (Vec<f64>, Balanced) {
+    /// The motion α at which springs carry the load up to `enough`, if they can. `begun` says that they nearly do at
+    /// α = 0. Collective.
+    fn balance(&mut self, enough: f64, begun: bool) -> (Vec<f64>, Balanced) {
         let r = self.natural.r;
         let (mut alpha, mut anchor) = (vec![0.0; r], vec![0.0; r]);
         let weak = self.weak.clone();
+        let first = if begun { 1.0 } else { FIRST };
         for round in 0..ROUNDS {
-            let softer = (FIRST * FALL.powi(round as i32)).max(1.0);
+            let softer = (first * FALL.powi(round as i32)).max(1.0);
             self.weak = weak.iter().map(|w| softer * w).collect();
-            self.minimise(&mut alpha, &anchor);
+            self.minimise(&mut alpha, &anchor, begun || round > 0);
             let along: Vec<f64> = alpha.iter().zip(&anchor).map(|(a, b)| a - b).collect();
             let mut rest = along.iter().zip(&self.weak).map(|(a, w)| a * w);
             if rest.all(|v| v.abs() <= enough) {
@@ -208,16 +218,15 @@ impl<'a> Springs<'a> {
         s > 0.0 || !self.jump.inequality[self.rows[k]]
     }
 
-    /// Newton's method from `alpha`. Collective.
-    fn minimise(&self, alpha: &mut [f64], anchor: &[f64]) {
+    /// Newton's method from `alpha`. It begins with the springs that pull there, or with all. Collective.
+    fn minimise(&self, alpha: &mut [f64], anchor: &[f64], begun: bool) {
         let shape = self.natural.shape.as_ref().expect("a body floats");
         let all = &self.natural.all;
         let mut stretch = self.stretch(alpha);
-        // The first step is that of all rows.
         let mut on = vec![true; self.rows.len()];
         let mut chosen = vec![false; all.n()];
         for step in 0..STEPS {
-            if step > 0 || alpha.iter().any(|a| *a != 0.0) {
+            if step > 0 || begun {
                 let now: Vec<bool> = (0..on.len()).map(|k| self.pulls(k, stretch[k])).collect();
                 // The minimum for the springs that pulled is that of those which pull now.
                 if !any(self.comm, now != on) && step > 0 {
