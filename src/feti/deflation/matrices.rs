@@ -107,7 +107,8 @@ impl Matrices {
                     Inverse::Sparse(sparse) => Some(sparse.shape.clone()),
                     Inverse::Dense(_) => None,
                 });
-                let (shape, e) = sparse::product(dual.comm(), &w.y, &fw.y, known);
+                let at = graph.at.as_ref().map(|at| positions(columns, at));
+                let (shape, e) = sparse::product(dual.comm(), [&w.y, &fw.y], at.as_deref(), known);
                 let diagonal = e.diagonal();
                 (Inverse::Sparse(Sparse::new(shape, e).into()), diagonal)
             }
@@ -190,6 +191,17 @@ impl Matrices {
         of.q.add(-alpha, &kernels, &mut v);
         Ok(())
     }
+}
+
+/// Where the panels of these columns are, from the positions of the bodies: in the middle of those that they reach.
+fn positions(columns: &[Column], at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let middle = |panel: &[Column]| {
+        let bodies = &panel[0].reach;
+        let sum = |d: usize| bodies.iter().map(|&b| at[b as usize][d]).sum::<f64>();
+        [0, 1, 2].map(|d| sum(d) / bodies.len().max(1) as f64)
+    };
+    let panels = columns.chunk_by(|a, b| a.reach == b.reach);
+    panels.map(middle).collect()
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::panels::Panels;
+use crate::feti::projector::blocks::Blocks;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gtg::Side;
 use crate::feti::projector::refined::Refined;
@@ -41,11 +42,12 @@ impl Sparse {
     }
 }
 
-/// The symmetric part of WᵀFW, block by block, and its shape: `known` if that suffices. Collective.
+/// The symmetric part of WᵀFW, block by block, and its shape: `known` if that suffices. `at` has the position of each
+/// panel, if they are known. Collective.
 pub fn product(
     comm: &SimpleCommunicator,
-    w: &Panels,
-    fw: &Panels,
+    [w, fw]: [&Panels; 2],
+    at: Option<&[[f64; 3]]>,
     known: Option<Rc<Shape>>,
 ) -> (Rc<Shape>, Csr) {
     let starts = w.starts();
@@ -61,6 +63,10 @@ pub fn product(
         lists[(pair >> 32) as usize].push(pair as u32);
     }
     let mut lists: Vec<Vec<u32>> = lists.into_iter().map(distinct).collect();
+    let new = |lists: &[Vec<u32>]| {
+        let order = || (Blocks::of_bodies(lists, &starts), at.map(<[_]>::to_vec));
+        Shape::ordered(comm, lists, &starts, order, &Sharing::any()).into()
+    };
     let shape = match known {
         Some(shape) if shape.pattern.contains(&lists) => shape,
         Some(shape) if shape.pattern.n_bodies() == n => {
@@ -68,9 +74,9 @@ pub fn product(
                 list.extend(shape.pattern.near(k));
                 *list = distinct(list.iter().copied());
             }
-            Shape::new(comm, &lists, &starts, &Sharing::any()).into()
+            new(&lists)
         }
-        _ => Shape::new(comm, &lists, &starts, &Sharing::any()).into(),
+        _ => new(&lists),
     };
     let pattern = &shape.pattern;
     let mut e = pattern.zeros();

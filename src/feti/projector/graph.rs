@@ -1,5 +1,6 @@
 //! The bodies that meet in each row, and groups of bodies that do not interact.
 
+use super::blocks::positions;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::linalg::lists::Lists;
 use crate::linalg::sorted::distinct;
@@ -16,6 +17,8 @@ pub struct BodyGraph {
     pub touched: Lists,
     /// For every body, the body itself and all bodies that it shares a block of rows with, increasing.
     pub near: Vec<Vec<u32>>,
+    /// Where the bodies are, if they are known.
+    pub at: Option<Vec<[f64; 3]>>,
 }
 
 impl BodyGraph {
@@ -50,6 +53,7 @@ impl BodyGraph {
             terms: sorted(terms),
             touched: sorted(touched),
             near: near.into_iter().map(distinct).collect(),
+            at: positions(stiffness.comm(), problem),
         }
     }
 

@@ -45,7 +45,7 @@ fn a_sparse_factor_solves_as_the_dense_one_does() {
         };
         let fw: Vec<Column> = w.iter().map(image).collect();
         let (pw, pf) = (Panels::new(&w), Panels::new(&fw));
-        let (shape, e) = product(session.comm(), &pw, &pf, None);
+        let (shape, e) = product(session.comm(), [&pw, &pf], None, None);
         let n = w.len();
         let mut whole = Dense::zeros(n, n);
         pw.add_product(&pf, &mut whole, (0, 0));
@@ -58,7 +58,7 @@ fn a_sparse_factor_solves_as_the_dense_one_does() {
         assert!(e.nnz() < n * n / 8, "{} entries are not sparse", e.nnz());
         let dense = Semidefinite::new(&whole);
         // The pattern is kept where it suffices.
-        let (again, _) = product(session.comm(), &pw, &pf, Some(shape.clone()));
+        let (again, _) = product(session.comm(), [&pw, &pf], None, Some(shape.clone()));
         assert!(Rc::ptr_eq(&shape, &again));
         let sparse = Sparse::new(shape, e);
         assert_eq!(sparse.rank(), dense.rank());

@@ -15,6 +15,7 @@ fn square(n: usize, motions: usize) -> (BodyGraph, Vec<usize>) {
         n: n * n,
         terms: Lists::default(),
         touched: Lists::default(),
+        at: None,
         near: (0..n * n).map(near).collect(),
     };
     (graph, (0..=n * n).map(|k| motions * k).collect())
