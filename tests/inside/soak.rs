@@ -49,6 +49,13 @@ fn motions_that_the_preconditioner_does_not_see_are_projected_out() {
     );
 }
 
+/// Normals that rounding has turned by 1e-17: translations across them were columns of G of such entries, and scaled to
+/// length 1 they counted as held.
+#[test]
+fn a_body_does_not_move_across_a_normal() {
+    fates(&[1201588], solved);
+}
+
 /// Q = M⁻¹ and bodies that differ by 10⁵: λ₀ was 10⁵ times as large as what balances the loads.
 #[test]
 fn multipliers_begin_no_larger_than_the_loads() {

@@ -36,7 +36,7 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
-/// Entries of R below this part of their column's largest are rounding.
+/// Entries of R below this part of their column's largest are rounding, and entries of G below this part of their row.
 const STILL: f64 = 1e-12;
 
 /// Largest relative error that a vector may have, with Q = M⁻¹, after multiplication with Gᵀ Q G and its inverse. Where
@@ -340,11 +340,10 @@ impl NaturalCoarse {
                 }
             }
         }
-        let entries = exchange(comm, outgoing)
-            .iter()
-            .map(|e| (e.row - jump.first as u32, e.col, e.value))
-            .collect();
-        Rows::from_triplets(jump.n_owned, entries)
+        let entries = exchange(comm, outgoing);
+        let first = jump.first as u32;
+        let entries = entries.iter().map(|e| (e.row - first, e.col, e.value));
+        Rows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
     }
 
     /// The largest entry of each column of R. Collective.

@@ -71,11 +71,40 @@ struct Group {
 impl Rows {
     /// From (row, column, value) entries, repeated ones added up.
     pub fn from_triplets(n: usize, entries: Vec<(u32, u32, f64)>) -> Rows {
+        Rows::of_matrix(Csr::from_triplets(n, &entries))
+    }
+
+    /// The same without entries below `part` of the largest in their row, each relative to the `scale` of its column: a
+    /// body that moves across a normal which rounding has turned a little does no work there.
+    pub fn without_rounding(
+        n: usize,
+        entries: &[(u32, u32, f64)],
+        scale: &[f64],
+        part: f64,
+    ) -> Rows {
+        let mut all = Csr::from_triplets(n, entries);
+        for i in 0..n {
+            let row = all.row_ptr[i]..all.row_ptr[i + 1];
+            let columns = &all.col[row.clone()];
+            let values = &mut all.val[row];
+            let size = |(&c, v): (&u32, &f64)| v.abs() / scale[c as usize];
+            let most = columns.iter().zip(&*values).map(size).fold(0.0, f64::max);
+            for (c, v) in columns.iter().zip(values) {
+                if size((c, v)) <= part * most {
+                    *v = 0.0;
+                }
+            }
+        }
+        Rows::of_matrix(all)
+    }
+
+    fn of_matrix(matrix: Csr) -> Rows {
+        let n = matrix.n();
         let Csr {
             row_ptr: start,
             col,
             val,
-        } = Csr::from_triplets(n, &entries).without_zeros();
+        } = matrix.without_zeros();
         let columns_of = |i: usize| &col[start[i]..start[i + 1]];
         // Groups are numbered in the order in which they come.
         let mut layout = Layout::default();
