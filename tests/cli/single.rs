@@ -1,23 +1,17 @@
 //! The program without mpirun: Open MPI starts no daemon for it and makes no directory, unless the user wants it.
 
 use crate::support::mpi::{self, Output};
-use crate::support::program::PATH;
+use crate::support::program::{ended, PATH};
 
 /// `fetifeti solve` where no daemon can be found and no directory be made for one, with this variable.
 fn alone(name: &str, value: &str) -> Output {
-    let out = mpi::command(PATH)
+    let mut command = mpi::command(PATH);
+    let command = command
         .args(["solve", "examples/scenes/poisson_2x2.toml"])
         .env("PATH", "")
         .env("OMPI_MCA_orte_tmpdir_base", "Cargo.toml/below_a_file")
-        .env(name, value)
-        .output()
-        .expect("the program starts");
-    Output {
-        code: out.status.code().unwrap_or(-2),
-        stdout: String::from_utf8_lossy(&out.stdout).into_owned(),
-        stderr: String::from_utf8_lossy(&out.stderr).into_owned(),
-        seconds: 0.0,
-    }
+        .env(name, value);
+    ended(command)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Runs the program itself, with and without mpirun.
 
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use super::mpi::{self, Output};
@@ -15,13 +15,17 @@ pub fn run_fetifeti(ranks: usize, args: &[&str]) -> Output {
 
 /// `fetifeti args` without mpirun. Comparisons start ranks themselves.
 pub fn fetifeti(args: &[&str]) -> Output {
-    let start = Instant::now();
     let mut command = match args.first() {
         Some(&("compare" | "bench")) => mpi::of_ranks(PATH),
         _ => mpi::command(PATH),
     };
+    ended(command.args(args))
+}
+
+/// What a command gives that reads nothing.
+pub fn ended(command: &mut Command) -> Output {
+    let start = Instant::now();
     let out = command
-        .args(args)
         .stdin(Stdio::null())
         .output()
         .expect("the program starts");
