@@ -7,11 +7,15 @@ use crate::mesh::{BoxMesh, Mesh, PointGrid};
 use crate::scene::body::Body;
 use crate::scene::model::body::BodySpec;
 use crate::scene::model::profile::Limits;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a
-/// corner.
-pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
+/// corner. `edge` has the shortest edge of a body's surface.
+pub(crate) fn coinciding(
+    bodies: &[Body],
+    pair: [usize; 2],
+    edge: &mut impl FnMut(usize) -> f64,
+) -> Vec<Interface> {
     let [a, b] = pair.map(|k| &bodies[k]);
     let apart = (0..3).any(|d| {
         let slack = 1e-6 * (a.bounds[1][d] - a.bounds[0][d]).abs();
@@ -20,23 +24,28 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     if apart {
         return Vec::new();
     }
-    let near = TOLERANCE * shortest(&a.spec).min(shortest(&b.spec));
+    let (of_a, of_b) = (sides_inside(a, b), sides_inside(b, a));
+    if of_a.is_empty() || of_b.is_empty() {
+        return Vec::new();
+    }
+    let near = TOLERANCE * edge(pair[0]).min(edge(pair[1]));
     let mut found = Vec::new();
     let mut seen = HashSet::new();
-    for sb in b.mesh().outer_sides() {
-        let nodes = b.mesh().side_nodes(sb).into_iter();
-        let placed = nodes.map(|k| (k, b.spec.position(k)));
-        let grid = PointGrid::new(placed, 4.0 * near);
+    for (sb, of_b) in &of_b {
+        let sb = *sb;
+        let placed: HashMap<usize, [f64; 3]> = of_b.iter().copied().collect();
+        let grid = PointGrid::new(of_b.iter().copied(), 4.0 * near);
         let twin = |x: [f64; 3]| {
-            let close = |&k: &usize| {
-                let y = b.spec.position(k);
+            let close = |k: &usize| {
+                let y = placed[k];
                 (0..3).all(|d| (x[d] - y[d]).abs() <= near)
             };
             grid.around(x, near).find(close)
         };
-        for sa in a.mesh().outer_sides() {
-            let pair = |node| Some([node, twin(a.spec.position(node))?]);
-            let nodes = a.mesh().side_nodes(sa).into_iter().filter_map(pair);
+        for (sa, of_a) in &of_a {
+            let sa = *sa;
+            let pair = |&(node, x): &Placed| Some([node, twin(x)?]);
+            let nodes = of_a.iter().filter_map(pair);
             let shared = share(&a.spec, sa, nodes.collect());
             let shape = match is_face([a, b], [sa, sb], &shared) {
                 true => Shape::Face,
@@ -58,6 +67,26 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     found
         .map(|(sides, shape, shared)| interface(bodies, pair, sides, shape, shared))
         .collect()
+}
+
+/// A node, and where it is.
+type Placed = (usize, [f64; 3]);
+
+/// The outer sides of a body that have nodes in the bounds of another one, with these nodes.
+fn sides_inside(body: &Body, other: &Body) -> Vec<(usize, Vec<Placed>)> {
+    let [low, high] = other.bounds;
+    let size = |b: &Body| norm(minus(b.bounds[1], b.bounds[0]));
+    // Nodes coincide that are a fraction of an edge apart.
+    let slack = 2.0 * TOLERANCE * size(body).min(size(other));
+    let is_inside =
+        |(_, x): &Placed| (0..3).all(|d| x[d] >= low[d] - slack && x[d] <= high[d] + slack);
+    let inside = |side: usize| {
+        let nodes = body.mesh().side_nodes(side).into_iter();
+        let placed = nodes.map(|k| (k, body.spec.position(k)));
+        let inside: Vec<_> = placed.filter(is_inside).collect();
+        (!inside.is_empty()).then_some((side, inside))
+    };
+    body.mesh().outer_sides().filter_map(inside).collect()
 }
 
 /// Pairs of nodes on side `side` of the first body, with their parameters there.
@@ -185,7 +214,7 @@ pub(crate) fn interface(
 }
 
 /// Length of the shortest edge between nodes of a side.
-fn shortest(body: &BodySpec) -> f64 {
+pub(crate) fn shortest(body: &BodySpec) -> f64 {
     let length = |a: usize, b: usize| norm(minus(body.position(a), body.position(b)));
     let mut out = f64::INFINITY;
     match &body.mesh {

@@ -1,7 +1,5 @@
 //! Sides of bodies: the unit normals at their nodes, and the parameters along them.
 
-use std::collections::HashSet;
-
 use super::curves;
 use super::sides::Face;
 use crate::fem::cell::Element;
@@ -19,18 +17,16 @@ pub(crate) fn of_side(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64
         return nodes.iter().map(|_| normal).collect();
     }
     let of_box = body.mesh.grid().is_some();
-    let meant: HashSet<usize> = match of_box {
-        true => HashSet::new(),
-        false => nodes.iter().copied().collect(),
-    };
-    let counts = |face: &Face| of_box || face.nodes.iter().all(|n| meant.contains(n));
+    // Mostly few, and many faces are asked about.
+    let mut meant = nodes.to_vec();
+    meant.sort_unstable();
+    let is_meant = |n: &usize| meant.binary_search(n).is_ok();
+    let counts = |face: &Face| of_box || face.nodes.iter().all(is_meant);
     // Q1 is used for P1 too, as the triangles of P1 elements would turn the normals towards their diagonals.
     let mut sums = body.side_normals(side, Element::Q1, counts);
     if nodes.iter().any(|n| !sums.contains_key(n)) {
         // Nodes that form no whole face: the faces around them.
-        let more = body.side_normals(side, Element::Q1, |face| {
-            face.nodes.iter().any(|n| meant.contains(n))
-        });
+        let more = body.side_normals(side, Element::Q1, |face| face.nodes.iter().any(is_meant));
         for (node, sum) in more {
             sums.entry(node).or_insert(sum);
         }

@@ -1,6 +1,6 @@
 //! The interfaces of boxes that touch: common faces, edges and corners, and the node pairs on them.
 
-use super::facing::coinciding;
+use super::facing::{coinciding, shortest};
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals;
 use super::sweep::near;
@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
+use std::collections::HashMap;
 
 /// Pairs of bodies that touch, in order of their numbers.
 pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
@@ -20,13 +21,18 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
             }
     };
     let bent = |k: usize| (&bodies[k].spec.map, &bodies[k].spec.motion);
+    let mut edges: HashMap<usize, f64> = HashMap::new();
+    let mut edge = |k: usize| {
+        let of = || shortest(&bodies[k].spec);
+        *edges.entry(k).or_insert_with(of)
+    };
     let mut out = Vec::new();
     for [a, b] in near(bodies, slack) {
         match [a, b].map(|k| bodies[k].mesh().grid()) {
             [Some(x), Some(y)] if bent(a) == bent(b) => {
                 out.extend(common(bodies, [x, y], [a, b])?);
             }
-            _ => out.extend(coinciding(bodies, [a, b])),
+            _ => out.extend(coinciding(bodies, [a, b], &mut edge)),
         }
     }
     out.sort_by_key(|i| i.bodies);
