@@ -1,4 +1,4 @@
-//! Whether deflation is worth its cost where many bodies float.
+//! Whether deflation is worth its cost where bodies are many.
 //!
 //! F W and F Q G are renewed whenever rows switch. Columns that are near each other take products of their own, so that
 //! their number is that of the columns around one body: in space a thousand products, each of them half of an
@@ -36,9 +36,14 @@ pub struct Problem {
     pub contact: bool,
 }
 
+/// Whether deflation of so few bodies and rigid motions costs little.
+pub fn is_cheap(bodies: usize, r: usize) -> bool {
+    bodies.max(r) <= FEW
+}
+
 /// Whether deflation is never worth its cost, whatever the graph of so many bodies and rigid motions.
 pub fn is_never(bodies: usize, r: usize) -> bool {
-    r > FEW && VECTORS * bodies as f64 + r as f64 > MOST as f64
+    !is_cheap(bodies, r) && VECTORS * bodies as f64 + r as f64 > MOST as f64
 }
 
 /// The eigenvalue λ from which deflation takes less time than it saves, by the iterations of CG with κ = λ,
@@ -47,11 +52,11 @@ pub fn is_never(bodies: usize, r: usize) -> bool {
 ///     ½ √λ ln(2/ε) − ½ √(1.5 τ) ln(2/ε)  >  the products with F and M⁻¹ / 2
 /// ```
 ///
-/// and zero with few motions, where it costs little. `start` has the first rigid motion of each body. The same on every
+/// and zero where it [is cheap](is_cheap). `start` has the first rigid motion of each body. The same on every
 /// rank.
 pub fn from(graph: &BodyGraph, start: &[usize], problem: Problem) -> f64 {
     let r = start.last().copied().unwrap_or(0);
-    if r <= FEW {
+    if is_cheap(graph.n, r) {
         return 0.0;
     }
     if is_never(graph.n, r) {

@@ -4,7 +4,6 @@ use super::eigenvalues;
 use super::iterate::{Run, Watch};
 use crate::feti::deflation::{self, worth, Cost, Deflation};
 use crate::feti::method::LinearMethod;
-use crate::feti::projector::gram::FEW;
 use crate::feti::settings::{Adaptive, ProjectorKind};
 use crate::feti::spectrum::Spectrum;
 use crate::Result;
@@ -50,11 +49,12 @@ impl LinearMethod {
         *self.worth.get_or_init(|| {
             let dual = self.dual();
             let natural = &dual.natural;
-            if natural.r <= FEW {
+            let (bodies, r) = (self.problem.n_bodies, natural.r);
+            if worth::is_cheap(bodies, r) {
                 return 0.0;
             }
             // The graph of so many bodies takes time and memory on every rank.
-            if worth::is_never(self.problem.n_bodies, natural.r) {
+            if worth::is_never(bodies, r) {
                 return f64::INFINITY;
             }
             let graph = natural.graph(&self.problem, &dual.stiffness);

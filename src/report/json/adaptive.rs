@@ -31,10 +31,10 @@ impl Declined {
     /// One line for a summary.
     pub fn text(&self) -> String {
         let worth = match self.worth_from {
-            Some(from) => format!(
-                "with so many floating bodies it costs more than it saves below about {from:.0e}"
-            ),
-            None => "its matrices are dense, and bodies that float are too many for it".into(),
+            Some(from) => {
+                format!("with so many bodies it costs more than it saves below about {from:.0e}")
+            }
+            None => "bodies are too many for its matrices".into(),
         };
         format!(
             "none of eigenvalues up to {:.3e}: {worth} (-fetifeti_adaptive 10 asks for it)",

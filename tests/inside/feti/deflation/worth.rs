@@ -29,6 +29,10 @@ fn of(n: usize, motions: usize, wide: bool, contact: bool) -> f64 {
 #[test]
 fn few_motions_cost_little() {
     assert_eq!(of(7, 3, true, true), 0.0);
+    // Springs hold all bodies: 144 of them are few, 169 are not.
+    assert_eq!(of(12, 0, true, true), 0.0);
+    assert!(of(13, 0, true, true) > 100.0);
+    assert_eq!(of(50, 0, true, true), f64::INFINITY);
 }
 
 #[test]
