@@ -104,15 +104,11 @@ fn outer(
                     state,
                     steps,
                     seconds,
-                } => {
-                    ask(method, &state.lambda)?;
-                    lagrangian::solve(method, settings, state, steps, seconds, observe)
-                }
+                } => lagrangian::solve(method, settings, state, steps, seconds, observe),
             }
         }
         ContactType::AugmentedLagrangian => {
             let state = start.unwrap_or_else(cold);
-            ask(method, &state.lambda)?;
             lagrangian::solve(method, settings, state, Vec::new(), 0.0, observe)
         }
         ContactType::Smalbe => {
@@ -124,8 +120,8 @@ fn outer(
 }
 
 /// Returns an error that names bodies which the load pushes away for ever. Few rigid motions are asked about before the
-/// loop, many only here: by a loop that has failed, and by those that would go on for ever, from the λ where they are.
-/// Collective.
+/// loop, many only here, from the λ where the loop is: where it has failed or does not end, and before SMALBE, which
+/// would go on for ever. Collective.
 fn ask(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
     let dual = method.dual();
     let load = Loads::new(&method.problem, &dual).kernel;

@@ -138,6 +138,12 @@ impl<'a> Search<'a> {
         self.method.system.set_compliance(None);
     }
 
+    /// Makes the rows springs again, as stiff as before.
+    pub fn soften(&self) {
+        let compliance = Some(self.compliance.clone());
+        self.method.system.set_compliance(compliance);
+    }
+
     /// μ ← (s)₊, and the set of the rows with μ > 0. Ends a minimisation.
     pub fn update(&mut self, state: &mut State) {
         let Some(point) = self.point.take() else {
@@ -157,8 +163,7 @@ impl<'a> Search<'a> {
             false => 0.0,
         };
         self.compliance = self.counts.iter().zip(&self.nodes).map(of).collect();
-        let compliance = Some(self.compliance.clone());
-        self.method.system.set_compliance(compliance);
+        self.soften();
     }
 
     /// The rows that hold: inequalities with s > 0, and the equations.

@@ -121,6 +121,12 @@ impl Progress {
         }
     }
 
+    /// Begins anew with the number after the last step.
+    pub(super) fn begin(&mut self, wrong: usize) {
+        *self = Progress::default();
+        self.note(wrong);
+    }
+
     /// The number of wrong rows after the last step.
     pub(super) fn wrong(&self) -> usize {
         self.wrong

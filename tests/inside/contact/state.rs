@@ -19,3 +19,17 @@ fn progress_is_a_new_smallest_number() {
         assert_eq!(progress.wrong(), wrong);
     }
 }
+
+#[test]
+fn progress_begins_anew() {
+    let mut progress = Progress::default();
+    [1, 19].into_iter().for_each(|wrong| progress.note(wrong));
+    assert!(progress.stalled(1));
+    progress.begin(19);
+    assert!(!progress.stalled(1));
+    assert_eq!(progress.wrong(), 19);
+    progress.note(5);
+    assert!(!progress.stalled(1));
+    progress.note(5);
+    assert!(progress.stalled(1));
+}
