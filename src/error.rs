@@ -2,6 +2,7 @@
 //! what was found and what was expected.
 
 use std::fmt;
+use std::io::Write;
 
 /// What went wrong, and with it the exit code of the command-line program.
 #[derive(Debug, Clone)]
@@ -77,6 +78,14 @@ impl Error {
     /// An [`Error::Environment`] from anything printable.
     pub fn environment(message: impl Into<String>) -> Self {
         Error::Environment(message.into())
+    }
+
+    /// Prints the error on standard error, after `who`, in one piece: what mpirun and other ranks write comes before or
+    /// after it.
+    pub(crate) fn tell(&self, who: &str) {
+        let text = format!("{who}: {self}\n");
+        // Where nobody listens there is the exit code.
+        let _ = std::io::stderr().write_all(text.as_bytes());
     }
 
     /// The exit code of the command-line program: 1 not converged, 2 bad input, 3 the environment.

@@ -168,7 +168,7 @@ pub fn run(work: impl FnOnce(&Session) -> Result<()>) -> std::process::ExitCode 
     let code = match Session::new(&args, "") {
         Ok(session) => session.run(work),
         Err(error) => {
-            eprintln!("Error: {error}");
+            error.tell("Error");
             error.exit_code()
         }
     };

@@ -64,7 +64,7 @@ fn start() -> i32 {
     let session = match begun {
         Ok(session) => session,
         Err(error) => {
-            eprintln!("Error: {error}");
+            error.tell("Error");
             return error.exit_code();
         }
     };

@@ -256,7 +256,7 @@ impl Session {
             return match result {
                 Ok(()) => 0,
                 Err(error) => {
-                    eprintln!("Error: {error}");
+                    error.tell("Error");
                     error.exit_code()
                 }
             };
@@ -269,13 +269,13 @@ impl Session {
                 let result = self.agree(result);
                 let error = result.expect_err("a rank failed");
                 if own && first == self.rank() {
-                    eprintln!("Error: {error}");
+                    error.tell("Error");
                 }
                 error.exit_code()
             }
             (Some(_), _) => 0,
             (None, Err(error)) => {
-                eprintln!("Error on rank {}: {error}", self.rank());
+                error.tell(&format!("Error on rank {}", self.rank()));
                 self.abort(error.exit_code())
             }
             (None, Ok(())) => unreachable!("a rank without error waits until the others come"),
@@ -341,7 +341,7 @@ fn end_mpi(error: &Error) {
         }
         // The lowest failing rank reports first and ends the others.
         std::thread::sleep(Duration::from_millis(200 * rank.min(20) as u64));
-        eprintln!("Error on rank {rank}: {error}");
+        error.tell(&format!("Error on rank {rank}"));
         ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, error.exit_code());
     }
 }
