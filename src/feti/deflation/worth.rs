@@ -52,8 +52,7 @@ pub fn is_never(bodies: usize, r: usize) -> bool {
 ///     ½ √λ ln(2/ε) − ½ √(1.5 τ) ln(2/ε)  >  the products with F and M⁻¹ / 2
 /// ```
 ///
-/// and zero where it [is cheap](is_cheap). `start` has the first rigid motion of each body. The same on every
-/// rank.
+/// and zero where it [is cheap](is_cheap). `start` has the first rigid motion of each body. The same on every rank.
 pub fn from(graph: &BodyGraph, start: &[usize], problem: Problem) -> f64 {
     let r = start.last().copied().unwrap_or(0);
     if is_cheap(graph.n, r) {

@@ -7,7 +7,7 @@ use crate::mesh::{BoxMesh, Mesh, PointGrid};
 use crate::scene::body::Body;
 use crate::scene::model::body::BodySpec;
 use crate::scene::model::profile::Limits;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a
 /// corner. `edge` has the shortest edge of a body's surface.
@@ -33,14 +33,11 @@ pub(crate) fn coinciding(
     let mut seen = HashSet::new();
     for (sb, of_b) in &of_b {
         let sb = *sb;
-        let placed: HashMap<usize, [f64; 3]> = of_b.iter().copied().collect();
-        let grid = PointGrid::new(of_b.iter().copied(), 4.0 * near);
+        let grid = PointGrid::new(of_b.iter().map(|p| p.1).enumerate(), 4.0 * near);
         let twin = |x: [f64; 3]| {
-            let close = |k: &usize| {
-                let y = placed[k];
-                (0..3).all(|d| (x[d] - y[d]).abs() <= near)
-            };
-            grid.around(x, near).find(close)
+            let close = |(_, y): &&Placed| (0..3).all(|d| (x[d] - y[d]).abs() <= near);
+            let mut around = grid.around(x, near).map(|k| &of_b[k]);
+            around.find(close).map(|p| p.0)
         };
         for (sa, of_a) in &of_a {
             let sa = *sa;

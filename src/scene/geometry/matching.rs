@@ -7,7 +7,7 @@ use super::facing::{interface, share};
 use super::interface::{Interface, Shape};
 use super::mortar::interface as interface_of_mortar;
 use super::surface::Surface;
-use super::sweep::extent;
+use super::sweep::{are_disjoint, extent};
 use crate::fem::Form;
 use crate::scene::body::Body;
 
@@ -95,22 +95,11 @@ impl<'a> Matching<'a> {
     }
 }
 
-/// The box in which nodes of another surface may have something opposite on a surface.
-struct Around([[f64; 3]; 2]);
-
-impl Around {
-    fn new(surface: &Surface, other: &Surface, reach: f64) -> Around {
-        // Nodes have partners a little beside their normals, and faces count as a little larger than they are.
-        let edge = other.edges.iter().copied().fold(0.0, f64::max);
-        let slack = reach + MATCH * edge + 0.1 * extent(surface);
-        let [low, high] = surface.bounds;
-        Around([low.map(|x| x - slack), high.map(|x| x + slack)])
-    }
-
-    fn contains(&self, x: [f64; 3]) -> bool {
-        let [low, high] = self.0;
-        (0..3).all(|d| low[d] <= x[d] && x[d] <= high[d])
-    }
+/// How far from the box of a surface nodes of another one may be that have something opposite on it.
+fn slack(surface: &Surface, other: &Surface, reach: f64) -> f64 {
+    // Nodes have partners a little beside their normals, and faces count as a little larger than they are.
+    let edge = other.edges.iter().copied().fold(0.0, f64::max);
+    reach + MATCH * edge + 0.1 * extent(surface)
 }
 
 fn join(
@@ -123,11 +112,13 @@ fn join(
     let specs = pair.map(|k| &bodies[k].spec);
     // Far apart the nearest nodes say nothing about the faces opposite.
     let near = |surface: &Surface, i: usize| reach.min(FAR * surface.edges[i]);
-    let (may_meet_a, may_meet_b) = (Around::new(a, b, reach), Around::new(b, a, reach));
+    let slacks = [slack(a, b, reach), slack(b, a, reach)];
+    let may_meet_a = |x: [f64; 3]| !are_disjoint(&[x, x], &a.bounds, slacks[0]);
+    let may_meet_b = |x: [f64; 3]| !are_disjoint(&[x, x], &b.bounds, slacks[1]);
     let mut pairs = Vec::new();
     let mut lonely = false;
     for (i, &node) in a.nodes.iter().enumerate() {
-        if !may_meet_b.contains(a.points[i]) {
+        if !may_meet_b(a.points[i]) {
             continue;
         }
         let (point, normals) = (a.points[i], &a.normals[i]);
@@ -143,7 +134,7 @@ fn join(
     lonely |= pairs.iter().any(|p| !taken.insert(p[1]));
     for (j, &node) in b.nodes.iter().enumerate() {
         let normals = &b.normals[j];
-        if !may_meet_a.contains(b.points[j]) {
+        if !may_meet_a(b.points[j]) {
             continue;
         }
         if !taken.contains(&node) && a.covers(b.points[j], normals, near(b, j), 2.0 * MATCH) {

@@ -138,7 +138,7 @@ fn size([low, high]: Bounds) -> f64 {
 }
 
 /// Whether two boxes are more than `slack` apart along an axis.
-fn are_disjoint(x: &Bounds, y: &Bounds, slack: f64) -> bool {
+pub(super) fn are_disjoint(x: &Bounds, y: &Bounds, slack: f64) -> bool {
     (0..3).any(|d| x[0][d] > y[1][d] + slack || y[0][d] > x[1][d] + slack)
 }
 
