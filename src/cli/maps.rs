@@ -51,7 +51,7 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
             .collect();
         for face in spec.faces(side) {
             let nodes: Vec<usize> = match face.kind {
-                Some(_) => face.nodes.clone(),
+                Some(_) => face.nodes.to_vec(),
                 None => face.outline(),
             };
             let nodes = nodes.iter().map(|node| of.get(node).copied());

@@ -25,14 +25,18 @@ pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
     let mut out = Vec::new();
     for piece in &side.pieces {
         let plane = Plane::new(side, piece);
-        let own: Vec<[f64; 2]> = side.corners(piece).iter().map(|x| plane.flat(*x)).collect();
-        let whole = area(&own);
         let around =
             bounds(side.corners(piece).into_iter().flat_map(|x| {
                 [-reach, reach].map(|r| [0, 1, 2].map(|d| x[d] + r * plane.axes[2][d]))
             }));
+        let near = other.near(&around);
+        if near.is_empty() {
+            continue;
+        }
+        let own: Vec<[f64; 2]> = side.corners(piece).iter().map(|x| plane.flat(*x)).collect();
+        let whole = area(&own);
         let mut found = Vec::new();
-        for k in other.near(&around) {
+        for k in near {
             let facing = &other.pieces[k as usize];
             if dot(facing.normal, piece.normal) >= OPPOSITE {
                 continue;
@@ -55,6 +59,9 @@ pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
             if side.meets(piece, other, facing, gap, reach) {
                 found.push((gap.abs(), facing, polygon));
             }
+        }
+        if found.is_empty() {
+            continue;
         }
         // Behind the nearest layer there may be another one, as the far side of a thin body.
         let least = found.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);

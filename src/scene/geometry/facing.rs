@@ -104,10 +104,8 @@ pub(crate) fn is_face(bodies: [&Body; 2], sides: [usize; 2], shared: &[SharedNod
     for k in [0, 1] {
         if bodies[k].mesh().cells().is_some() {
             let nodes: HashSet<usize> = shared.iter().map(|s| s.nodes[k]).collect();
-            let faces = bodies[k].spec.faces(sides[k]);
-            return faces
-                .iter()
-                .any(|f| f.nodes.iter().all(|n| nodes.contains(n)));
+            let mut faces = bodies[k].spec.faces(sides[k]);
+            return faces.any(|f| f.nodes.iter().all(|n| nodes.contains(n)));
         }
     }
     let varies = |k: usize| shared.iter().any(|s| s.t[k] != shared[0].t[k]);

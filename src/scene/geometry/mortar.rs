@@ -96,15 +96,12 @@ pub(crate) fn lacks_signs(body: &Body, side: usize, nodes: impl Iterator<Item = 
         return false;
     }
     let signs = |face: &BodyFace| face.kind.is_none_or(mortar::has_positive_integrals);
-    let mut faces = body.spec.faces(side);
-    faces.retain(|face| !signs(face));
-    if faces.is_empty() {
+    let mut without = body.spec.faces(side).filter(|f| !signs(f)).peekable();
+    if without.peek().is_none() {
         return false;
     }
     let meant: HashSet<usize> = nodes.collect();
-    faces
-        .iter()
-        .any(|face| face.nodes.iter().all(|n| meant.contains(n)))
+    without.any(|face| face.nodes.iter().all(|n| meant.contains(n)))
 }
 
 /// A side of a body with its faces as the elements see them, and the node of the body for each of its nodes.
@@ -112,7 +109,7 @@ pub(crate) fn surface(spec: &BodySpec, side: usize, element: Element) -> (Arc<Si
     let nodes = spec.mesh.side_nodes(side);
     let place: HashMap<usize, u32> = nodes.iter().copied().zip(0..).collect();
     let points = nodes.iter().map(|&k| spec.position(k)).collect();
-    let faces = spec.faces(side).into_iter().flat_map(|face| {
+    let faces = spec.faces(side).flat_map(|face| {
         let pieces = oriented(spec, side, &face, element).into_iter();
         pieces.map(|(kind, list)| Face {
             kind,
@@ -132,7 +129,7 @@ fn oriented(
     element: Element,
 ) -> Vec<(CellKind, Vec<usize>)> {
     if let Some(kind) = face.kind {
-        return vec![(kind, face.nodes.clone())];
+        return vec![(kind, face.nodes.to_vec())];
     }
     let weights = spec.face_weights(side, face, Element::Q1);
     let outward = weights

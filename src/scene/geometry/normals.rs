@@ -21,12 +21,13 @@ pub(crate) fn of_side(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64
     let mut meant = nodes.to_vec();
     meant.sort_unstable();
     let is_meant = |n: &usize| meant.binary_search(n).is_ok();
-    let counts = |face: &Face| of_box || face.nodes.iter().all(is_meant);
+    let around = body.faces_around(side, |n| is_meant(&n));
+    let counts = |face: &&Face| of_box || face.nodes.iter().all(is_meant);
     // Q1 is used for P1 too, as the triangles of P1 elements would turn the normals towards their diagonals.
-    let mut sums = body.side_normals(side, Element::Q1, counts);
+    let mut sums = body.side_normals(side, Element::Q1, around.iter().filter(counts));
     if nodes.iter().any(|n| !sums.contains_key(n)) {
         // Nodes that form no whole face: the faces around them.
-        let more = body.side_normals(side, Element::Q1, |face| face.nodes.iter().any(is_meant));
+        let more = body.side_normals(side, Element::Q1, around.iter());
         for (node, sum) in more {
             sums.entry(node).or_insert(sum);
         }

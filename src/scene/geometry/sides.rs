@@ -1,21 +1,27 @@
 //! Sides of bodies by element faces: nodal areas and normals.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
+
+use arrayvec::ArrayVec;
 
 use crate::fem::cell::{side_weights, Element, Side};
 use crate::fem::element::face_values;
 use crate::fem::{element, Form};
 use crate::linalg::vec3::{cross, unit};
-use crate::mesh::{places, BoxMesh, CellKind, Mesh};
+use crate::mesh::{places, BoxMesh, CellKind, CellMesh, Mesh};
 use crate::mortar;
 use crate::scene::model::body::BodySpec;
+
+/// Most nodes of a face: quadrilaterals of second order with a node in their middle.
+const MOST_NODES: usize = 9;
 
 /// The face of an element on a side of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Face {
     /// Its nodes. On boxes they are in lexicographic order ([`Side::corners`]), else in the order of the kind, such
     /// that the normal points out of the body.
-    pub nodes: Vec<usize>,
+    pub nodes: ArrayVec<usize, MOST_NODES>,
     /// Its kind, a segment in the plane; `None` on boxes.
     pub kind: Option<CellKind>,
 }
@@ -36,19 +42,28 @@ pub type Weight = (f64, [f64; 3]);
 
 impl BodySpec {
     /// The faces of elements on a side.
-    pub fn faces(&self, side: usize) -> Vec<Face> {
+    pub fn faces(&self, side: usize) -> impl Iterator<Item = Face> + '_ {
+        let of_box = self.mesh.grid().map(|grid| of_grid(grid, side));
+        let of_cells = self.mesh.cells().map(|mesh| of_cells(mesh, side));
+        of_box
+            .into_iter()
+            .flatten()
+            .chain(of_cells.into_iter().flatten())
+    }
+
+    /// Those of them that have a node among some.
+    pub fn faces_around(&self, side: usize, nodes: impl Fn(usize) -> bool) -> Vec<Face> {
+        let mine = |face: &Face| face.nodes.iter().any(|&n| nodes(n));
         match &self.mesh {
-            Mesh::Grid(grid) => of_grid(grid, side).collect(),
+            Mesh::Grid(grid) => of_grid(grid, side).filter(mine).collect(),
             Mesh::Cells(mesh) => {
-                let face = |&(cell, face): &(u32, u8)| {
-                    let (cell, face) = (cell as usize, usize::from(face));
-                    let nodes = mesh.cells.side_nodes(cell, face);
-                    Face {
-                        nodes: nodes.map(|k| k as usize).collect(),
-                        kind: Some(mesh.cells.kind(cell).sides()[face].kind),
-                    }
-                };
-                mesh.sides[side].faces.iter().map(face).collect()
+                // Mostly few of many, which are made for these alone.
+                let all = mesh.sides[side].faces.iter();
+                let mine = all.filter(|&&(cell, face)| {
+                    let mut of_face = mesh.cells.side_nodes(cell as usize, face.into());
+                    of_face.any(|n| nodes(n as usize))
+                });
+                mine.map(|&which| of_cell(mesh, which)).collect()
             }
         }
     }
@@ -94,17 +109,18 @@ impl BodySpec {
         }
     }
 
-    /// ∫ N_a n with the unit normal n out of the body, by node, over the faces of a side that `among` accepts. On
-    /// triangles of 6 and quadrilaterals of 8 nodes N_a has the integral zero or less at corners: the normal at the
-    /// node times the integral of a positive function stands in its place there.
+    /// ∫ N_a n with the unit normal n out of the body, by node, over some faces of a side. On triangles of 6 and
+    /// quadrilaterals of 8 nodes N_a has the integral zero or less at corners: the normal at the node times the integral
+    /// of a positive function stands in its place there.
     pub fn side_normals(
         &self,
         side: usize,
         element: Element,
-        among: impl Fn(&Face) -> bool,
+        faces: impl Iterator<Item = impl Borrow<Face>>,
     ) -> HashMap<usize, [f64; 3]> {
         let mut sums: HashMap<usize, [f64; 3]> = HashMap::new();
-        for face in self.faces(side).iter().filter(|f| among(f)) {
+        for face in faces {
+            let face = face.borrow();
             let normals = self.face_normals(side, face, element);
             for (&node, normal) in face.nodes.iter().zip(normals) {
                 let sum = sums.entry(node).or_default();
@@ -147,4 +163,18 @@ fn of_grid(grid: &BoxMesh, side: usize) -> impl Iterator<Item = Face> + use<'_> 
             kind: None,
         }
     })
+}
+
+fn of_cells(mesh: &CellMesh, side: usize) -> impl Iterator<Item = Face> + use<'_> {
+    let all = mesh.sides[side].faces.iter();
+    all.map(|&which| of_cell(mesh, which))
+}
+
+fn of_cell(mesh: &CellMesh, (cell, face): (u32, u8)) -> Face {
+    let (cell, face) = (cell as usize, usize::from(face));
+    let nodes = mesh.cells.side_nodes(cell, face);
+    Face {
+        nodes: nodes.map(|k| k as usize).collect(),
+        kind: Some(mesh.cells.kind(cell).sides()[face].kind),
+    }
 }

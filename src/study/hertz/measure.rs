@@ -44,7 +44,7 @@ pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
         let side = scene.side_of(row.label.source, body)?;
         let normals = normals.entry((body, side)).or_insert_with(|| {
             let spec = &scene.bodies[body].spec;
-            spec.side_normals(side, scene.form.element, |_| true)
+            spec.side_normals(side, scene.form.element, spec.faces(side))
         });
         let along = dot(*normals.get(&node)?, row.normal()).abs();
         (along > 0.0).then_some(along)
