@@ -110,8 +110,8 @@ impl BodySpec {
     }
 
     /// ∫ N_a n with the unit normal n out of the body, by node, over some faces of a side. On triangles of 6 and
-    /// quadrilaterals of 8 nodes N_a has the integral zero or less at corners: the normal at the node times the integral
-    /// of a positive function stands in its place there.
+    /// quadrilaterals of 8 nodes N_a has the integral zero or less at corners: the normal at the node times the
+    /// integral of a positive function stands in its place there.
     pub fn side_normals(
         &self,
         side: usize,
