@@ -56,8 +56,8 @@ pub fn command(program: &str) -> Command {
     command
 }
 
-/// As `command`, for a program that starts ranks: they sleep where they wait. Beside two programs that compute, a test
-/// of five seconds takes fifteen with that, and 140 without.
+/// As `command`, for a program that starts ranks: they sleep where they wait long. Beside two programs that compute, a
+/// test of five seconds takes fifteen with that, and 140 without.
 pub fn of_ranks(program: &str) -> Command {
     let mut command = command(program);
     command.env("LD_PRELOAD", patient());
