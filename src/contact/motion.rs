@@ -61,6 +61,19 @@ pub fn check_many(
     }
 }
 
+/// Before a loop with all candidates as equations: returns an error if the load works on a motion that even these leave
+/// free. Where it pushes bodies away, the sentence says so, as it does of few motions. Collective.
+///
+/// # Errors
+/// As [`check`], and bodies that nothing holds.
+pub fn check_held(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
+    let held = dual.natural.check_held(problem, load);
+    if held.is_err() {
+        check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
+    }
+    held
+}
+
 /// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
 /// begins at `lambda`. Collective.
 ///

@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
     pub fn new(method: &'a LinearMethod, state: &mut State) -> Result<Search<'a>> {
         let comm = method.session.comm();
         let dual = method.dual();
-        let (stiffness, natural) = (&dual.stiffness, &dual.natural);
+        let stiffness = &dual.stiffness;
         let nodes = stiffness.compliance_of_rows(&method.problem)?;
         let counts = stiffness.jump.inequality.clone();
         let mine = counts.iter().filter(|c| **c).count();
@@ -100,7 +100,7 @@ impl<'a> Search<'a> {
         let mut at = Iterate::new(&dual, loads)?;
         if state.reference == 0.0 {
             motion::check_few(&method.problem, &dual, &at.loads.kernel)?;
-            natural.check_held(&method.problem, &at.loads.kernel)?;
+            motion::check_held(&method.problem, &dual, &at.loads.kernel)?;
             at.begin(&dual)?;
             state.reference = at.evaluate_projected(&dual)?;
         }

@@ -113,7 +113,7 @@ fn a_load_along_a_motion_that_no_pivot_shows_is_refused() {
             Ok::<_, fetifeti::Error>(solver.solve().err().map(|e| e.to_string()))
         });
         let said = said.unwrap().expect("a refusal");
-        let expected = format!("and {} more are held by nothing", BLOCKS + 1 - 3);
+        let expected = format!("and {} more are pushed away for ever", BLOCKS + 1 - 3);
         assert!(said.contains(&expected), "slope {slope}: {said}");
     }
 }

@@ -88,6 +88,27 @@ fn the_falling_arch_is_said_to_fall() {
     }
 }
 
+/// The same arch in 60 voussoirs: more motions than are asked about before the loop. All fall but the two that are
+/// held.
+#[test]
+fn a_falling_arch_of_many_voussoirs_is_said_to_fall() {
+    let (n, half) = (60, 1.0);
+    let angles: Vec<String> = (0..n)
+        .map(|k| format!("[0, 0, {}]", 60.0 - half * (2 * k + 1) as f64))
+        .collect();
+    let whole = text("arch_falls");
+    let (before, rest) = whole.split_once("instances = [\n").unwrap();
+    let after = rest.split_once("\n]").unwrap().1;
+    let text = format!("{before}instances = [{}]{after}", angles.join(", "))
+        .replace("from = 85, to = 95", "from = 89, to = 91")
+        .replace("instances = 11", &format!("instances = {}", n - 1));
+    let scene = Scene::parse("arch.toml", &text).unwrap();
+    assert_eq!(scene.n_bodies(), n);
+    let error = solve(&scene, 1e-8).map(drop).unwrap_err().to_string();
+    let expected = "bodies \"voussoir[1]\", \"voussoir[2]\", \"voussoir[3]\" and 55 more are pushed away for ever";
+    assert!(error.starts_with(expected), "{error}");
+}
+
 /// Without friction a course passes its wind from brick to brick, and a bed joint the weight above it.
 #[test]
 fn the_wall_passes_wind_and_weight() {

@@ -197,8 +197,7 @@ impl<'a> ActiveSet<'a> {
         let all = State::cold(&method.dual().stiffness.jump).active;
         method.set_active(&all)?;
         let dual = method.dual();
-        dual.natural
-            .check_held(&method.problem, &self.at.loads.kernel)?;
+        motion::check_held(&method.problem, &dual, &self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
         self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)
