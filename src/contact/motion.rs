@@ -7,7 +7,8 @@
 //!
 //! Few motions are asked about before the loop, by the exact method of Lawson and Hanson. With many the loop is the
 //! answer: λ_I ≥ 0 with Gᵀ λ = e is what it looks for, and where there is none, a motion α with eᵀα > 0 against which
-//! no row stands shows when rows are put back ([`restore`](super::restore)). Only a loop that fails asks (`rigid`).
+//! no row stands shows when rows are put back ([`restore`](super::restore)). Only a loop that fails asks (`rigid`), and
+//! one that cannot begin, as the load works on a motion that all rows leave free.
 
 use mpi::topology::SimpleCommunicator;
 
