@@ -340,7 +340,7 @@ fn a_named_case_on_a_mesh_leaves_scene_and_mesh() {
     let dir = Scratch::new("bench-mesh");
     let out = dir.path("out");
     let quick = [
-        "rod-contact-10",
+        "rod-contact-4",
         "--quick",
         "--rounds",
         "1",
@@ -352,9 +352,9 @@ fn a_named_case_on_a_mesh_leaves_scene_and_mesh() {
     ];
     let report = bench(&quick);
     check(&report.cases[0], 1);
-    let plan = fetifeti(&["plan", &format!("{out}/rod-contact-10.toml")]);
+    let plan = fetifeti(&["plan", &format!("{out}/rod-contact-4.toml")]);
     assert_eq!(plan.code, 0, "{}", plan.all());
-    let kept = Path::new(&out).join("rod-contact-10.msh");
+    let kept = Path::new(&out).join("rod-contact-4.msh");
     assert!(kept.is_file(), "{}", kept.display());
 }
 
