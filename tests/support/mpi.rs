@@ -34,15 +34,13 @@ const LIMIT: Duration = Duration::from_secs(1200);
 /// process has some, and they would mislead another MPI program.
 pub fn command(program: &str) -> Command {
     let mut command = Command::new(program);
-    for (name, _) in std::env::vars_os() {
-        let text = name.to_string_lossy();
-        if ["OMPI_", "PMIX_", "PMI_", "ORTE_"]
-            .iter()
-            .any(|p| text.starts_with(p))
-        {
-            command.env_remove(&name);
-        }
-    }
+    // MPI that begins in another thread adds variables of its own until the program is started.
+    let of_mpi = |name: &str| {
+        let prefixes = ["OMPI_", "PMIX_", "PMI_", "ORTE_"];
+        prefixes.iter().any(|p| name.starts_with(p))
+    };
+    let others = std::env::vars_os().filter(|v| !of_mpi(&v.0.to_string_lossy()));
+    command.env_clear().envs(others);
     command
         // Containers run as root, and small machines have fewer cores than ranks.
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
