@@ -2,7 +2,8 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run install uninstall dist deb test test-newer sanitize fuzz soak fmt lint docs clean
+.PHONY: help setup setup-tests build run install uninstall dist deb test test-newer sanitize fuzz soak
+.PHONY: fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -28,10 +29,13 @@ export OMP_THREAD_LIMIT ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 help: ## Say what can be made
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s%s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s%s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-setup: ## Install the Debian packages that are missing
+setup: ## Install the Debian packages that the program needs and that are missing
 	@scripts/setup.sh
+
+setup-tests: ## Install what the tests need, too
+	@scripts/setup.sh --tests
 
 build: setup ## Build the program in release mode
 	cargo build --release
@@ -72,8 +76,7 @@ dist: ## Write target/dist/fetifeti-VERSION.tar.xz, sources that build without a
 deb: setup ## Make a Debian source package and its binary packages in target/deb
 	scripts/deb.sh "$(TARGET)/deb"
 
-test: ## Check format, lints and documentation, then run every test
-	@scripts/setup.sh --clients
+test: setup ## Check format, lints and documentation, then run every test
 	cargo fmt --all -- --check
 	scripts/test.sh
 
@@ -82,7 +85,7 @@ NEWER_DIR ?= $(TARGET)/newer
 NEWER_PETSC ?= 3.22.5
 NEWER_SLEPC ?= 3.22.2
 
-test-newer: setup ## Build a newer PETSc and SLEPc, and test the plug-in, the C API and the solver with them
+test-newer: setup-tests ## Build a newer PETSc and SLEPc, and test the plug-in, the C API and the solver with them
 	scripts/newer_petsc.sh "$(NEWER_DIR)" "$(NEWER_PETSC)" "$(NEWER_SLEPC)"
 	source "$(NEWER_DIR)/env" && export CARGO_TARGET_DIR="$(NEWER_DIR)/build-$(NEWER_PETSC)" && \
 	cargo test --no-fail-fast --lib --test embedding --test linear --test ranks --test contact \
@@ -91,7 +94,7 @@ test-newer: setup ## Build a newer PETSc and SLEPc, and test the plug-in, the C 
 # Some of malloc, valgrind, address, thread and miri; all without.
 PARTS ?=
 
-sanitize: setup ## Run the program, the plug-in and the C API under sanitizers (an hour; PARTS="address miri")
+sanitize: setup-tests ## Run the program, the plug-in and the C API under sanitizers (an hour; PARTS="address miri")
 	scripts/sanitize.sh "$(TARGET)/sanitize" $(PARTS)
 
 # Seconds of each target of fuzz, and of soak together. Nightly Rust is needed for fuzz only.

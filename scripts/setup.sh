@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # Makes a Debian 12 machine ready to build and test fetifeti: finds what is missing, says so, installs it.
 #
-#   scripts/setup.sh            install what is missing (as root, or through sudo without a password)
-#   scripts/setup.sh --check    only say what is missing
-#   scripts/setup.sh --clients  also what examples/clients need, for the tests: dolfinx (350 MB) and SciPy
+#   scripts/setup.sh          install what is missing for the program (as root, or through sudo without a password)
+#   scripts/setup.sh --check  only say what is missing
+#   scripts/setup.sh --tests  also what the tests need: compilers, other builds of PETSc, and for examples/clients
+#                             dolfinx (350 MB) and SciPy
 #
 # Exit code 0: everything is there; 3: something is missing and could not be installed.
 set -euo pipefail
 
 MIN_RUST=85 # minor version of Rust 1.x, as in Cargo.toml's rust-version
-CHECK_ONLY=false CLIENTS=false
+CHECK_ONLY=false TESTS=false
 for argument; do
     case $argument in
         --check) CHECK_ONLY=true ;;
-        --clients) CLIENTS=true ;;
+        --tests) TESTS=true ;;
         *)
-            echo "setup: unknown argument '$argument', expected --check, --clients or nothing." >&2
+            echo "setup: unknown argument '$argument', expected --check, --tests or nothing." >&2
             exit 2
             ;;
     esac
@@ -27,21 +28,25 @@ stop() {
     exit 3
 }
 
-# The packages that the build and the tests need. A PETSc or SLEPc named by the user replaces Debian's.
+# The packages that the build needs. A PETSc or SLEPc named by the user replaces Debian's.
 packages=(build-essential ca-certificates pkg-config libopenmpi-dev openmpi-bin libclang-dev libopenblas0-serial)
-# PETSc's own examples, a Fortran compiler, petsc4py and CMake are for the tests of the plug-in.
-packages+=(gfortran cmake)
-[ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev libpetsc3.18-dev-examples python3-petsc4py-real)
+[ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev)
+[ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)
 # The orderings METIS (through CHOLMOD of SuiteSparse) and Scotch; the build goes without what is missing.
 [ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)
-# pip, venv and pytest are for the Python package.
-packages+=(python3-pip python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest)
-# A processor without AVX2, for a test.
-packages+=(qemu-user)
-# Builds of PETSc that the plug-in must refuse.
-packages+=(libpetsc-complex3.18-dev libpetsc64-real3.18-dev)
-[ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)
-! $CLIENTS || packages+=(python3-dolfinx python3-scipy)
+if $TESTS; then
+    # PETSc's own examples, a Fortran compiler, petsc4py and CMake are for the tests of the plug-in.
+    packages+=(gfortran cmake)
+    [ -n "${PETSC_DIR:-}" ] || packages+=(libpetsc3.18-dev-examples python3-petsc4py-real)
+    # pip, venv and pytest are for the Python package.
+    packages+=(python3-pip python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest)
+    # A processor without AVX2, for a test.
+    packages+=(qemu-user)
+    # Builds of PETSc that the plug-in must refuse.
+    packages+=(libpetsc-complex3.18-dev libpetsc64-real3.18-dev)
+    # Clients.
+    packages+=(python3-dolfinx python3-scipy)
+fi
 
 # Rust: rustup's is taken where there is one; a machine without any gets Debian's current toolchain. Debian 12's package
 # "cargo" is Rust 1.63 and too old, its package "cargo-web" follows the current releases.
