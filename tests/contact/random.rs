@@ -53,28 +53,19 @@ fn all_agree(session: &Session, cases: &[Case], how: How) -> std::result::Result
     }
 }
 
-fn on_one_rank(how: How) {
-    with_session(move |session| {
-        let cases = Collection::new(0, 500).solvable;
-        if let Err(why) = all_agree(session, &cases, how) {
-            panic!("{why}");
-        }
+/// In one process: to make the scenes takes a third of the time.
+#[test]
+fn five_hundred_random_scenes_by_every_method() {
+    mpi::alone(|| {
+        with_session(|session| {
+            let cases = Collection::new(0, 500).solvable;
+            for kind in KINDS {
+                if let Err(why) = all_agree(session, &cases, kind.into()) {
+                    panic!("{why}");
+                }
+            }
+        });
     });
-}
-
-#[test]
-fn five_hundred_random_scenes_by_active_sets() {
-    mpi::alone(|| on_one_rank(ContactType::ActiveSet.into()));
-}
-
-#[test]
-fn five_hundred_random_scenes_by_the_augmented_lagrangian() {
-    mpi::alone(|| on_one_rank(ContactType::AugmentedLagrangian.into()));
-}
-
-#[test]
-fn five_hundred_random_scenes_by_smalbe() {
-    mpi::alone(|| on_one_rank(ContactType::Smalbe.into()));
 }
 
 /// As if all rows at a point were a large block, cross points with rows that depend on each other included.

@@ -1,5 +1,5 @@
-//! The program on scenes whose nodes do not match: the same rows hold on 1, 2, 4 and 7 ranks, with the same multipliers
-//! and gaps, as `interfaces.csv` says.
+//! The program on scenes whose nodes do not match: the same rows hold on 1, 7 and 2 or 4 ranks, with the same
+//! multipliers and gaps, as `interfaces.csv` says.
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
@@ -115,9 +115,9 @@ fn the_same_rows_hold_on_any_ranks() {
     let cases = trackers().into_iter().filter(|c| wanted.contains(&c.name));
     scenes.extend(cases.map(|c| (c.name, c.text)));
     assert_eq!(scenes.len(), 4);
-    for (name, text) in scenes {
+    for (k, (name, text)) in scenes.into_iter().enumerate() {
         let file = scratch.file(&format!("{name}.toml"), &text);
-        let tables = [1, 2, 4, 7].map(|n| {
+        let tables = [1, [2, 4][k % 2], 7].map(|n| {
             let out = scratch.path(&format!("{name}-{n}"));
             let run = run_fetifeti(
                 n,
