@@ -69,7 +69,7 @@ fn a_clamped_plate_without_block_size() {
 fn random_partitions() {
     let scratch = Scratch::new("embed-partitions");
     let program = program(&scratch);
-    for (ranks, first, count) in [(1, 0, 120), (3, 200, 40), (2, 0, 40)] {
+    for (ranks, first, count) in [(1, 0, 120), (3, 200, 24), (2, 0, 24)] {
         let options = format!("-first {first} -count {count} -fetifeti_ksp_rtol 1e-11");
         let out = program.run(ranks, &options);
         good(&out, &options);

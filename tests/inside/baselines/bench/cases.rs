@@ -15,8 +15,8 @@ fn load(name: &str, quick: bool) -> Scene {
 fn cases_have_the_size_that_they_are_named_after() {
     let dofs = |name, quick| Numbering::new(&load(name, quick)).len();
     assert_eq!(dofs("poisson-1024", false), 1023 * 1023);
-    assert_eq!(dofs("poisson-1024-random", false), 1023 * 1023);
     assert_eq!(dofs("poisson-1024", true), 127 * 127);
+    assert_eq!(dofs("poisson-1024-random", true), 127 * 127);
     assert_eq!(dofs("contact-512", false), 512 * 513 + 513 * 513);
     assert_eq!(dofs("cube-24", false), 3 * 25 * 24 * 25);
     assert_eq!(dofs("cube-40", false), 3 * 41 * 40 * 41);
@@ -25,8 +25,11 @@ fn cases_have_the_size_that_they_are_named_after() {
         dofs("bodies-contact-512", true),
         27 * 375 - 9 * 75 - 4 * (6 * 25 + 3 * 20)
     );
+    // Large meshes, a million random values and 4,096 bodies take seconds each.
+    let dear =
+        |c: &&Named| c.mesh.is_some() || c.name.ends_with("random") || c.name.ends_with("4096");
     for quick in [false, true] {
-        for case in CASES.iter().filter(|c| quick || c.mesh.is_none()) {
+        for case in CASES.iter().filter(|c| quick || !dear(c)) {
             let scene = load(case.name, quick);
             assert_eq!(
                 scene.has_contact(),
