@@ -1,5 +1,7 @@
 //! The threads that share one rank's subdomains.
 
+use std::sync::Mutex;
+
 use rayon::prelude::*;
 
 use crate::{Error, Result};
@@ -48,12 +50,7 @@ impl Team {
     /// Runs `work` on every item; items are independent of each other.
     pub fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
         match self.pool.as_ref().filter(|_| self.iterates) {
-            Some(pool) => pool.install(|| {
-                items
-                    .par_iter_mut()
-                    .enumerate()
-                    .for_each(|(i, item)| work(i, item))
-            }),
+            Some(pool) => each(pool, items, &work),
             None => items
                 .iter_mut()
                 .enumerate()
@@ -64,8 +61,26 @@ impl Team {
     /// Calls `work` for every index below `n`; results are in order.
     pub fn map<T: Send>(&self, n: usize, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         match &self.pool {
-            Some(pool) => pool.install(|| (0..n).into_par_iter().map(work).collect()),
+            Some(pool) => {
+                let results: Vec<Mutex<Option<T>>> = (0..n).map(|_| Mutex::new(None)).collect();
+                each(pool, &mut vec![(); n], &|i, ()| {
+                    let result = work(i);
+                    *results[i].lock().expect("nobody else has it") = Some(result);
+                });
+                let results = results.into_iter();
+                let result = |r: Mutex<Option<T>>| r.into_inner().ok().flatten();
+                results
+                    .map(|r| result(r).expect("every index is called"))
+                    .collect()
+            }
             None => (0..n).map(work).collect(),
         }
     }
+}
+
+/// Calls `work` for every item. Rayon's code is made once for each type of items and not for each `work`: it was a
+/// twentieth of what is compiled.
+fn each<T: Send>(pool: &rayon::ThreadPool, items: &mut [T], work: &(dyn Fn(usize, &mut T) + Sync)) {
+    let all = items.par_iter_mut().enumerate();
+    pool.install(|| all.for_each(|(i, item)| work(i, item)));
 }
