@@ -41,7 +41,7 @@ fn cycles_leave_nothing_behind() {
     let program = Program::own("mpicc", &scratch, "host.c");
     let out = program.with_plugin(
         2,
-        "-do cycles -cycles 500 -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
+        "-do cycles -cycles 300 -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
     );
     assert_eq!(out.code, 0, "{}", out.all());
     // -malloc_dump prints memory that has not been freed.

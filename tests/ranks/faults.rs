@@ -58,28 +58,21 @@ fn what_cannot_be_written_is_named() {
             3,
             &[&file, "is a file, expected a directory"],
         );
-        said(&solve(&["--out", &below]), 3, &[&below]);
         said(
             &solve(&["--json", &folder]),
             3,
             &[&folder, "is a directory, expected a file"],
         );
-        said(
-            &solve(&["--json", "/dev/full"]),
-            3,
-            &["/dev/full", "No space left"],
-        );
-        said(
-            &solve(&["--checkpoint", "/dev/full"]),
-            3,
-            &["/dev/full", "No space left"],
-        );
-        said(
-            &solve(&["--events", "/dev/full"]),
-            3,
-            &["/dev/full", "No space left"],
-        );
+        for file in ["--json", "--checkpoint", "--events"] {
+            // One of them stands for all on four ranks.
+            if ranks < 4 || file == "--events" {
+                let out = solve(&[file, "/dev/full"]);
+                said(&out, 3, &["/dev/full", "No space left"]);
+            }
+        }
     }
+    let out = run_fetifeti(2, &["solve", MODEL, "--quiet", "--out", &below]);
+    said(&out, 3, &[&below]);
     // Nobody reads what it prints.
     let closed = [
         "-o",
