@@ -73,7 +73,7 @@ uninstall: ## Remove what was installed below PREFIX
 dist: ## Write target/dist/fetifeti-VERSION.tar.xz, sources that build without a registry
 	scripts/dist.sh "$(TARGET)/dist"
 
-deb: setup ## Make a Debian source package and its binary packages in target/deb
+deb: setup-tests ## Make a Debian source package and its binary packages in target/deb
 	scripts/deb.sh "$(TARGET)/deb"
 
 test: setup ## Check format, lints and documentation, then run every test
