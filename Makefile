@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-tests build run install uninstall dist deb test test-newer sanitize fuzz soak
+.PHONY: help setup setup-tests build run install uninstall dist deb test test-all test-newer sanitize fuzz soak
 .PHONY: fmt lint docs clean
 
 OUT ?= out
@@ -76,9 +76,12 @@ dist: ## Write target/dist/fetifeti-VERSION.tar.xz, sources that build without a
 deb: setup-tests ## Make a Debian source package and its binary packages in target/deb
 	scripts/deb.sh "$(TARGET)/deb"
 
-test: setup ## Check format, lints and documentation, then run every test
+test: setup ## Check format, lints and documentation, then run every test; some with a sample of their cases
 	cargo fmt --all -- --check
 	scripts/test.sh
+
+test-all: export FETIFETI_TEST_ALL = 1
+test-all: test ## As test, with all cases of every test (half an hour)
 
 # A newer PETSc than Debian's, from the source packages of the Python registry.
 NEWER_DIR ?= $(TARGET)/newer

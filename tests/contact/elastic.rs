@@ -1,6 +1,7 @@
 //! Random elastic contact scenes, plane and solid, flat and curved, by both contact loops and on several ranks, against
 //! the assembled reference.
 
+use crate::support::sample::of;
 use crate::support::session::with_session;
 use crate::support::{contact_judge, elastic_scene, mpi};
 use elastic_scene::{case, Case, Fate};
@@ -60,9 +61,10 @@ fn judge(session: &Session, case: &Case, kind: ContactType) -> std::result::Resu
 fn random_scenes_agree_with_the_reference() {
     mpi::alone(|| {
         with_session(|session| {
-            let fates = all_agree(session, 0..400).unwrap_or_else(|why| panic!("{why}"));
+            let last = of(160, 400);
+            let fates = all_agree(session, 0..last as u64).unwrap_or_else(|why| panic!("{why}"));
             println!("solvable, unbounded, infeasible: {fates:?}");
-            assert!(fates[0] > 200, "{fates:?}");
+            assert!(fates[0] > last / 2, "{fates:?}");
         });
     });
 }
@@ -70,7 +72,7 @@ fn random_scenes_agree_with_the_reference() {
 #[test]
 fn random_scenes_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
-        all_agree(session, 1000..1015)
+        all_agree(session, 1000..1000 + of(8, 15) as u64)
             .map_err(Error::input)
             .map(|_| ())
     });

@@ -1,6 +1,7 @@
 //! More rigid motions than dense algebra takes: answers of all loops against the assembled reference, and bodies that
 //! nothing stops, which are named by loops that had not asked before.
 
+use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
@@ -239,13 +240,20 @@ fn many_motions_on_one_rank() {
     });
 }
 
+/// In the sample some on two ranks and others on four.
 #[test]
 fn many_motions_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
-        agree(session, &KINDS[..1])?;
-        agree_with_jumps(session, &WEIGHTS[2..])?;
-        copies_do_not_matter(session)?;
-        refused(session)
+        let turn = |ranks: usize| session.size() == ranks || all_cases();
+        if turn(4) {
+            agree(session, &KINDS[..1])?;
+            copies_do_not_matter(session)?;
+        }
+        if turn(2) {
+            agree_with_jumps(session, &WEIGHTS[2..])?;
+            refused(session)?;
+        }
+        Ok(())
     });
     for ranks in [2, 4] {
         let out = started.run(ranks, "many");

@@ -1,5 +1,6 @@
 //! Random contact scenes by the method, with both contact loops and on several ranks, against the assembled reference.
 
+use crate::support::sample::of;
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi, random_scene};
 use assembled::compare::Agreement;
@@ -55,10 +56,10 @@ fn all_agree(session: &Session, cases: &[Case], how: How) -> std::result::Result
 
 /// In one process: to make the scenes takes a third of the time.
 #[test]
-fn five_hundred_random_scenes_by_every_method() {
+fn random_scenes_by_every_method() {
     mpi::alone(|| {
         with_session(|session| {
-            let cases = Collection::new(0, 500).solvable;
+            let cases = Collection::new(0, of(160, 500)).solvable;
             for kind in KINDS {
                 if let Err(why) = all_agree(session, &cases, kind.into()) {
                     panic!("{why}");
@@ -73,7 +74,7 @@ fn five_hundred_random_scenes_by_every_method() {
 fn random_scenes_with_coupled_blocks() {
     mpi::alone(|| {
         with_session(|session| {
-            let cases = Collection::new(20_000, 150).solvable;
+            let cases = Collection::new(20_000, of(75, 150)).solvable;
             for kind in KINDS {
                 let how = How {
                     coupled: 0,
@@ -90,7 +91,7 @@ fn random_scenes_with_coupled_blocks() {
 #[test]
 fn scenes_without_a_solution_are_refused() {
     with_session(|session| {
-        let cases = Collection::new(0, 500);
+        let cases = Collection::new(0, of(250, 500));
         let mut wrong = Vec::new();
         for kind in KINDS {
             for case in cases.unbounded.iter().chain(&cases.infeasible) {
@@ -121,7 +122,7 @@ fn scenes_without_a_solution_are_refused() {
 #[test]
 fn random_scenes_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
-        let cases = Collection::new(10_000, 24).solvable;
+        let cases = Collection::new(10_000, of(12, 24)).solvable;
         for kind in KINDS {
             all_agree(session, &cases, kind.into()).map_err(Error::input)?;
         }

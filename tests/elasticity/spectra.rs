@@ -2,6 +2,7 @@
 
 use crate::support::checks::identities;
 use crate::support::mpi::alone;
+use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::solid;
 use fetifeti::feti::{MethodSettings, PcType, Primal};
@@ -57,9 +58,11 @@ fn scalar_in_3d() {
         with_session(|session| {
             let solid = |sizes| Solid::new(3, sizes, SCALAR, Rows::Tied);
             near(kappa(session, &solid([2, 2, 4]), CORRECTED), 2.74, 2.0);
-            near(kappa(session, &solid([2, 3, 3]), CORRECTED), 2.92, 2.0);
             let plain = kappa(session, &solid([2, 3, 3]), PcType::Dirichlet);
             near(plain, 5.39, 1.0);
+            if all_cases() {
+                near(kappa(session, &solid([2, 3, 3]), CORRECTED), 2.92, 2.0);
+            }
             // Without edge averages, vertices alone do not suffice in 3D; additional faces do no harm.
             let with = |text| {
                 let settings = MethodSettings {
@@ -76,24 +79,40 @@ fn scalar_in_3d() {
     });
 }
 
+fn plates(nu: f64, rows: Rows) -> Solid {
+    Solid::new(2, [2, 8, 4], elastic(nu), rows)
+}
+
+#[test]
+fn plane_strain_along_normals() {
+    alone(|| {
+        with_session(|session| {
+            // The reference values treat whole nodes as candidates and have no rows at cross points.
+            let by_node = |pc| kappa(session, &plates(0.3, Rows::NormalsByNode), pc);
+            near(by_node(CORRECTED), 14.5, 1.0);
+            // Ours: tangential values on the faces stay in Z_c.
+            let normals = kappa(session, &plates(0.3, Rows::Normals), CORRECTED);
+            assert!(normals < 14.5, "{normals}");
+            if all_cases() {
+                near(by_node(PcType::Dirichlet), 67.3, 1.0);
+            }
+        })
+    });
+}
+
 #[test]
 fn plane_strain() {
     alone(|| {
         with_session(|session| {
-            let solid = |nu, rows| Solid::new(2, [2, 8, 4], elastic(nu), rows);
-            let tied = kappa(session, &solid(0.3, Rows::Tied), CORRECTED);
-            assert!(tied <= 24.0, "{tied}");
+            let solid = plates;
+            if all_cases() {
+                let tied = kappa(session, &solid(0.3, Rows::Tied), CORRECTED);
+                assert!(tied <= 24.0, "{tied}");
+            }
             let stiff = kappa(session, &solid(0.49, Rows::Tied), CORRECTED);
             near(stiff, 25.3, 1.0);
             let plain = kappa(session, &solid(0.49, Rows::Tied), PcType::Dirichlet);
             near(plain, 278.0, 2.0);
-            // The reference values treat whole nodes as candidates and have no rows at cross points.
-            let by_node = |pc| kappa(session, &solid(0.3, Rows::NormalsByNode), pc);
-            near(by_node(CORRECTED), 14.5, 1.0);
-            near(by_node(PcType::Dirichlet), 67.3, 1.0);
-            // Ours: tangential values on the faces stay in Z_c.
-            let normals = kappa(session, &solid(0.3, Rows::Normals), CORRECTED);
-            assert!(normals < 14.5, "{normals}");
             // Edge averages are constraints in 2D, too, if the substructures list them.
             let edges = Solid {
                 plane_edges: true,
@@ -115,7 +134,9 @@ fn elasticity_in_3d() {
         with_session(|session| {
             let tied = elastic_cubes(Rows::Tied);
             near(kappa(session, &tied, CORRECTED), 4.68, 1.0);
-            near(kappa(session, &tied, PcType::Dirichlet), 6.78, 1.0);
+            if all_cases() {
+                near(kappa(session, &tied, PcType::Dirichlet), 6.78, 1.0);
+            }
         })
     });
 }
@@ -125,8 +146,10 @@ fn elasticity_in_3d_along_normals() {
     alone(|| {
         with_session(|session| {
             let solid = elastic_cubes;
-            let by_node = kappa(session, &solid(Rows::NormalsByNode), CORRECTED);
-            near(by_node, 2.47, 1.0);
+            if all_cases() {
+                let by_node = kappa(session, &solid(Rows::NormalsByNode), CORRECTED);
+                near(by_node, 2.47, 1.0);
+            }
             let normals = kappa(session, &solid(Rows::Normals), CORRECTED);
             assert!(normals < 2.47, "{normals}");
         })

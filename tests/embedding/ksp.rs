@@ -1,5 +1,6 @@
 //! KSPFETIFETI as an ordinary KSP: used again, changed, reset, monitored; and problems that it refuses.
 
+use crate::support::sample::{of, sample};
 use crate::support::{mpi, plugin};
 use mpi::Scratch;
 use plugin::{number_after, Program};
@@ -8,23 +9,24 @@ use plugin::{number_after, Program};
 fn every_way_of_using_a_ksp() {
     let scratch = Scratch::new("embed-host");
     let program = Program::own("mpicc", &scratch, "host.c");
-    for (ranks, options) in [
-        (1, "-do once"),
-        (4, "-do once -ksp_rtol 1e-10"),
+    let cases = [
         (4, "-do once -idle 2"),
-        (4, "-do once -fixed 0"),
-        (1, "-do again"),
-        (4, "-do again"),
+        (1, "-do once"),
         (4, "-do again -fixed 0 -fetifeti_bodies 2"),
+        (4, "-do once -ksp_rtol 1e-10"),
         (
             2,
             "-do two -one_ksp_type fetifeti -two_ksp_type fetifeti -two_fetifeti_bodies 2",
         ),
-        (4, "-do bodies"),
+        (4, "-do once -fixed 0"),
         (4, "-do bodies -fixed 0"),
+        (1, "-do again"),
         (2, "-do unfit"),
+        (4, "-do again"),
         (4, "-do split"),
-    ] {
+        (4, "-do bodies"),
+    ];
+    for (ranks, options) in sample(2, cases) {
         let out = program.with_plugin(ranks, &format!("{options} -ksp_type fetifeti"));
         assert_eq!(out.code, 0, "{options}: {}", out.all());
         assert!(
@@ -39,10 +41,11 @@ fn every_way_of_using_a_ksp() {
 fn cycles_leave_nothing_behind() {
     let scratch = Scratch::new("embed-cycles");
     let program = Program::own("mpicc", &scratch, "host.c");
-    let out = program.with_plugin(
-        2,
-        "-do cycles -cycles 300 -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
+    let options = format!(
+        "-do cycles -cycles {} -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
+        of(120, 300)
     );
+    let out = program.with_plugin(2, &options);
     assert_eq!(out.code, 0, "{}", out.all());
     // -malloc_dump prints memory that has not been freed.
     assert!(!out.all().contains("bytes in"), "{}", out.all());

@@ -1,5 +1,6 @@
 //! KSPFETIFETI in PETSc's own example programs, unmodified: the same answers as CG on the same matrix.
 
+use crate::support::sample::sample;
 use crate::support::{mpi, plugin};
 use mpi::Scratch;
 use plugin::{number_after, vector, Program};
@@ -59,7 +60,7 @@ fn agrees(
 fn ex71_with_a_dirichlet_side() {
     let scratch = Scratch::new("embed-ex71");
     let program = Program::tutorial(&scratch, "ex71");
-    for (ranks, options, ours, most) in [
+    let cases = [
         (1, "-dim 2 -cells 12,12", "", 0),
         (2, "-dim 2 -cells 12,12", "", 6),
         (4, "-dim 1 -cells 16", "", 2),
@@ -88,7 +89,8 @@ fn ex71_with_a_dirichlet_side() {
             "",
             40,
         ),
-    ] {
+    ];
+    for (ranks, options, ours, most) in sample(2, cases) {
         let its = agrees(&program, &scratch, ranks, "", options, ours);
         assert!(
             its <= most,
@@ -101,7 +103,7 @@ fn ex71_with_a_dirichlet_side() {
 fn ex71_with_a_null_space() {
     let scratch = Scratch::new("embed-null");
     let program = Program::tutorial(&scratch, "ex71");
-    for (ranks, options) in [
+    let cases = [
         (4, "-dim 2 -cells 16,16 -dirichlet 0"),
         (9, "-dim 2 -cells 18,18 -dirichlet 0 -fetifeti_bodies 3"),
         (4, "-dim 2 -cells 16,16 -periodicity 1,0"),
@@ -117,7 +119,8 @@ fn ex71_with_a_null_space() {
             4,
             "-dim 2 -cells 12,12 -pde_type Elasticity -periodicity 1,0",
         ),
-    ] {
+    ];
+    for (ranks, options) in sample(2, cases) {
         let more =
             "-ksp_type fetifeti -ksp_rtol 1e-8 -ksp_converged_reason -ksp_view_final_residual";
         let out = program.with_plugin(ranks, &format!("{options} {more}"));
@@ -139,15 +142,16 @@ fn ex49_elasticity_with_jumps() {
     let program = Program::tutorial(&scratch, "ex49");
     let bricks = "-c_str 2 -brick_E 1,1000 -brick_nu 0.4,0.2 -brick_span 10";
     let sponge = "-c_str 3 -sponge_E0 1 -sponge_E1 1000 -sponge_nu0 0.4 -sponge_nu1 0.2 -sponge_t 1 -sponge_w 4";
-    for (ranks, options, ours) in [
+    let cases = [
         (1, "", ""),
         (4, "", ""),
         (9, "", "-elas_fetifeti_bodies 3"),
         (4, bricks, "-elas_fetifeti_bodies 2"),
-        (4, sponge, ""),
         // MatZeroRows on rows only: the operator is not symmetric.
         (4, "-use_nonsymbc", ""),
-    ] {
+        (4, sponge, ""),
+    ];
+    for (ranks, options, ours) in sample(2, cases) {
         let options = format!("-mx 20 -my 20 -dm_mat_type is -no_view {options}");
         if options.contains("nonsymbc") {
             let more =

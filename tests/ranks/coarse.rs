@@ -1,5 +1,6 @@
 //! The natural coarse problem of many bodies: whoever solves it, on whatever number of ranks, the answer is the same.
 
+use crate::support::sample::all_cases;
 use crate::support::{mpi, program};
 use mpi::Scratch;
 use program::{ended, run_fetifeti};
@@ -52,12 +53,12 @@ fn whoever_solves_the_coarse_problem_the_answer_is_the_same() {
     let telescope =
         "-fetifeti_gtg_pc_type telescope -fetifeti_gtg_pc_telescope_reduction_factor 2 \
                      -fetifeti_gtg_telescope_pc_type lu";
-    for (name, scene) in scenes(&scratch) {
+    for (i, (name, scene)) in scenes(&scratch).into_iter().enumerate() {
         let own = report(1, &scene, &scratch, "");
         assert_eq!(own["natural_coarse"], Value::Null);
         let expected = |r: &Value| (r["energy"].as_f64().unwrap(), kappa(r));
         let (energy, own_kappa) = expected(&own);
-        for ranks in [1, 2, 4] {
+        for (r, ranks) in [1, 2, 4].into_iter().enumerate() {
             let solvers = [
                 ("", None),
                 ("-fetifeti_gtg_pc_type lu", Some(false)),
@@ -67,7 +68,11 @@ fn whoever_solves_the_coarse_problem_the_answer_is_the_same() {
                 ),
                 (telescope, None),
             ];
-            for (options, iterated) in solvers {
+            for (k, (options, iterated)) in solvers.into_iter().enumerate() {
+                // The sample has each solver for each scene, on some numbers of ranks.
+                if (i + r + k) % 2 == 0 && !all_cases() {
+                    continue;
+                }
                 if ranks == 1 && (options == telescope || options.is_empty()) {
                     continue;
                 }

@@ -6,7 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::faults::whole;
-use crate::support::mpi::{command, of_ranks, Scratch};
+use crate::support::mpi::{of_petsc, Scratch};
 use crate::support::program::PATH;
 use fetifeti::checkpoint::file::read;
 
@@ -25,9 +25,9 @@ impl Run {
         let scene = scratch.file("scene.toml", scene);
         let (out, checkpoint) = (scratch.path("out"), scratch.path("state"));
         let mut run = match ranks {
-            1 => command(PATH),
+            1 => of_petsc(PATH),
             _ => {
-                let mut run = of_ranks("mpirun");
+                let mut run = of_petsc("mpirun");
                 run.args(["-n", &ranks.to_string(), PATH]);
                 run
             }

@@ -1,6 +1,7 @@
 //! `study benchmarks --quick`: its values against their references, and their independence of ranks.
 
 use crate::support::keys::{self, Keys};
+use crate::support::sample::sample;
 use crate::support::{mpi, program};
 use fetifeti::study::benchmarks::{BenchmarksReport, CaseReport};
 use mpi::Scratch;
@@ -112,7 +113,7 @@ fn units_do_not_matter() {
 #[test]
 fn round_bodies_have_the_pressures_of_half_spaces() {
     let dir = Scratch::new("benchmarks-round");
-    for (name, ranks) in [("hertz-cylinder", 1), ("roller", 2), ("punch", 1)] {
+    for (name, ranks) in sample(2, [("punch", 1), ("hertz-cylinder", 1), ("roller", 2)]) {
         let case = quick(name, ranks, &dir);
         for series in &case.series {
             let finest = series.meshes.last().expect("a mesh");

@@ -18,6 +18,7 @@ pub mod program;
 pub mod qp;
 pub mod random_scene;
 pub mod rng;
+pub mod sample;
 pub mod scene_message;
 pub mod session;
 pub mod solid;

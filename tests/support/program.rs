@@ -15,11 +15,7 @@ pub fn run_fetifeti(ranks: usize, args: &[&str]) -> Output {
 
 /// `fetifeti args` without mpirun. Comparisons start ranks themselves.
 pub fn fetifeti(args: &[&str]) -> Output {
-    let mut command = match args.first() {
-        Some(&("compare" | "bench")) => mpi::of_ranks(PATH),
-        _ => mpi::command(PATH),
-    };
-    ended(command.args(args))
+    ended(mpi::of_petsc(PATH).args(args))
 }
 
 /// What a command gives that reads nothing.
