@@ -1,5 +1,5 @@
-//! Sides whose nodes do not match: the answers on 1, 2, 4 and 7 ranks, in the sample on 1 and 7, are the direct solution
-//! of the assembled problem. Among them are the cases that others report (`study hard-cases`).
+//! Sides whose nodes do not match: the answers on 1, 2, 4 and 7 ranks, in the sample on 1 and 7, are the direct
+//! solution of the assembled problem. Among them are the cases that others report (`study hard-cases`).
 
 use super::direct::{compare, solve, Answer};
 use crate::support::mpi::{as_rank, Scratch};

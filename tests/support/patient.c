@@ -7,6 +7,8 @@
    yields at first, and sleeps where it has waited long or its core has just been away.
 */
 #define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -49,7 +51,26 @@ int sched_yield(void)
 
 /*
    Debian's PETSc is linked with Trilinos' ML, whose 17 libraries take a third of the time in which a program starts.
-   The tests do not use it, so this library bears its name (mpi.rs) and they stay unloaded. PETSc's calls of ML are
-   looked up when they are made; this variable is looked up at once.
+   The tests do not use it, so this library bears its name (mpi.rs) and they stay unloaded. It has what PETSc refers to.
 */
 void *ml_void_mem_ptr;
+
+#define ABSENT(name)                                                           \
+  void name(void)                                                              \
+  {                                                                            \
+    fputs("tests/support/patient.c: tests have PETSc without ML\n", stderr);  \
+    abort();                                                                   \
+  }
+
+ABSENT(ML_Aggregate_Create) ABSENT(ML_Aggregate_Destroy) ABSENT(ML_Aggregate_Set_CoarsenScheme_Coupled)
+ABSENT(ML_Aggregate_Set_CoarsenScheme_METIS) ABSENT(ML_Aggregate_Set_CoarsenScheme_MIS)
+ABSENT(ML_Aggregate_Set_DampingFactor) ABSENT(ML_Aggregate_Set_Dimensions) ABSENT(ML_Aggregate_Set_MaxCoarseSize)
+ABSENT(ML_Aggregate_Set_NullSpace) ABSENT(ML_Aggregate_Set_Threshold) ABSENT(ML_Aggregate_VizAndStats_Clean)
+ABSENT(ML_Aggregate_VizAndStats_Setup) ABSENT(ML_Comm_Set_UsrComm) ABSENT(ML_Create) ABSENT(ML_Destroy)
+ABSENT(ML_Gen_AmatrixRAP) ABSENT(ML_Gen_MGHierarchy_UsingAggregation)
+ABSENT(ML_Gen_MultiLevelHierarchy_UsingAggregation) ABSENT(ML_Init_Amatrix) ABSENT(ML_Operator_Apply)
+ABSENT(ML_Operator_Clean) ABSENT(ML_Operator_Getrow) ABSENT(ML_Operator_Init) ABSENT(ML_Repartition_Activate)
+ABSENT(ML_Repartition_Set_LargestMinMaxRatio) ABSENT(ML_Repartition_Set_MinPerProc)
+ABSENT(ML_Repartition_Set_Partitioner) ABSENT(ML_Repartition_Set_PutOnSingleProc) ABSENT(ML_Set_Amatrix_Getrow)
+ABSENT(ML_Set_Amatrix_Matvec) ABSENT(ML_Set_PrintLevel) ABSENT(ML_Set_SpectralNormScheme_Anorm)
+ABSENT(ML_Set_Symmetrize) ABSENT(ML_build_global_numbering)
