@@ -43,7 +43,7 @@ fn cycles_leave_nothing_behind() {
     let program = Program::own("mpicc", &scratch, "host.c");
     let options = format!(
         "-do cycles -cycles {} -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
-        of(120, 300)
+        of(120, 500)
     );
     let out = program.with_plugin(2, &options);
     assert_eq!(out.code, 0, "{}", out.all());

@@ -58,7 +58,7 @@ void *ml_void_mem_ptr;
 #define ABSENT(name)                                                           \
   void name(void)                                                              \
   {                                                                            \
-    fputs("tests/support/patient.c: tests have PETSc without ML\n", stderr);  \
+    fputs("tests/support/patient.c: tests have PETSc without ML\n", stderr);   \
     abort();                                                                   \
   }
 

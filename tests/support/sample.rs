@@ -1,6 +1,6 @@
 //! Some of the cases in `make test`, all of them in `make test-all`.
 //!
-//! A test with many cases of one kind takes a sample, which it chooses so that every kind is in it.
+//! Tests with many cases take a sample, and order their cases so that what differs most is in it.
 
 /// Whether all cases are wanted: `make test-all` sets this variable.
 pub fn all_cases() -> bool {
