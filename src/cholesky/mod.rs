@@ -16,7 +16,7 @@
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | `null_vector` | what a semidefinite matrix maps to zero |
-//! | `deal`, [`team`], [`shared`] | which rank has which front, the ranks that share a factor, and the factor |
+//! | `deal`, [`team`], `narrow`, [`shared`] | which rank has which front, the ranks that share a factor, what each of them knows, and the factor |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
@@ -28,6 +28,7 @@ mod front;
 pub mod interior;
 pub mod lanes;
 pub mod multifrontal;
+mod narrow;
 mod null_vector;
 pub mod panel;
 pub mod shared;

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use super::front::{factor_front, factor_semidefinite};
 use super::panel;
 use super::strips::{self, Update};
-use super::symbolic::Symbolic;
+use super::symbolic::{Symbolic, ABSENT};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{Dense, Scratch};
 
@@ -213,7 +213,12 @@ impl<'a> Elimination<'a> {
             let (col, val) = k.row(dof);
             // The pattern need not have the place of an entry that vanishes.
             for (&i, &v) in col.iter().zip(val).filter(|e| *e.1 != 0.0) {
-                let p = sym.position[i as usize] as usize;
+                let p = sym.position[i as usize];
+                // What is not here has been eliminated before.
+                if p == ABSENT {
+                    continue;
+                }
+                let p = p as usize;
                 if p >= front.end {
                     column[place[p] as usize] += v;
                 } else if p >= front.start + j {

@@ -21,13 +21,14 @@ pub struct SharedCholesky {
     team: Rc<Team>,
     /// The panels that this rank has.
     factor: PartialCholesky,
-    /// A number for every row; those of this rank and its ghosts are in use.
+    /// A number for every row of the pattern; those of this rank and its ghosts are in use.
     work: RefCell<Vec<f64>>,
 }
 
 impl SharedCholesky {
     /// The factor of `k`, of which a rank needs the rows that it has, and the dofs that it leaves out
-    /// ([`semidefinite`](PartialCholesky::semidefinite)), increasing. Collective.
+    /// ([`semidefinite`](PartialCholesky::semidefinite)), by their numbers among those of all ranks, which increase.
+    /// Collective.
     pub fn semidefinite(k: &Csr, team: Rc<Team>, least: f64) -> (SharedCholesky, Vec<u32>) {
         let (comm, symbolic) = (&team.comm, &*team.symbolic);
         let rows_below = |f: usize| symbolic.fronts[f].below.len();
@@ -50,7 +51,7 @@ impl SharedCholesky {
                 }
             }
         });
-        let weak: Vec<u64> = weak.iter().map(|&dof| u64::from(dof)).collect();
+        let weak: Vec<u64> = weak.iter().map(|&d| u64::from(team.name(d))).collect();
         let left = gather_all(comm, &weak).concat();
         let mut left: Vec<u32> = left.into_iter().map(|dof| dof as u32).collect();
         left.sort_unstable();
@@ -58,13 +59,17 @@ impl SharedCholesky {
             symbolic: team.symbolic.clone(),
             panels: elimination.panels,
         };
-        let work = vec![0.0; team.n()].into();
+        let work = vec![0.0; team.symbolic.n()].into();
         (SharedCholesky { team, factor, work }, left)
     }
 
     /// b ← A⁺ b, the same on every rank: zero at the dofs that are left out, after rounding. Collective.
+    ///
+    /// # Panics
+    /// If the team is narrowed: then no rank has such vectors.
     pub fn solve(&self, b: &mut [f64]) {
         let (team, factor) = (&*self.team, &self.factor);
+        assert!(!team.is_narrow(), "every rank has all dofs");
         if team.comm.size() == 1 {
             factor.solve(b);
             return;
@@ -150,26 +155,33 @@ impl SharedCholesky {
         &self.team
     }
 
-    /// For each of these dofs, which are left out, the vector v with A v = 0 that is one there, by increasing dof.
-    /// Collective.
-    pub fn null_vectors(&self, dofs: &[u32]) -> Vec<Vec<(u32, f64)>> {
+    /// For each of these dofs, which are left out, the vector D v, A v = 0, with v one there: by increasing dof. Dofs
+    /// have their numbers among those of all ranks; `scale` has D for those that have a number here. Collective.
+    pub fn null_vectors(&self, dofs: &[u32], scale: &[f64]) -> Vec<Vec<(u32, f64)>> {
         let (team, symbolic) = (&*self.team, &*self.factor.symbolic);
+        let name = |p: u32| team.name(symbolic.interior[p as usize]);
+        let row = |name: f64| {
+            let row = team.dof(name as u32).and_then(|dof| team.row(dof));
+            row.expect("a message is about rows below a front")
+        };
         let mut words: Vec<u64> = Vec::new();
-        let mut v = vec![0.0; team.n()];
-        for (k, &dof) in dofs.iter().enumerate() {
-            let start = team.row(dof);
-            let mut largest: f64 = 1.0;
-            if team.has_row(start) {
-                v[start] = 1.0;
+        let mut v = vec![0.0; symbolic.n()];
+        for (k, &of_all) in dofs.iter().enumerate() {
+            let dof = team.dof(of_all);
+            if let Some(own) = dof.filter(|&dof| team.has(dof)) {
+                v[team.row(own).expect("an own row")] = 1.0;
             }
-            // Messages have the largest entry so far, then rows and entries.
+            // Where it has no row all that is known of v has come in messages.
+            let start = dof.and_then(|dof| team.row(dof)).unwrap_or(usize::MAX);
+            let mut largest: f64 = 1.0;
+            // Messages have the largest entry so far, then dofs and entries.
             posting(&team.comm, team.messages().1, |post| {
                 for run in team.runs.iter().rev() {
                     if let Some(from) = run.parent {
                         let values = received_any(&team.comm, from);
                         largest = largest.max(values[0]);
                         for pair in values[1..].chunks_exact(2) {
-                            v[pair[0] as usize] = pair[1];
+                            v[row(pair[0])] = pair[1];
                         }
                     }
                     let fronts = team.fronts(run).rev();
@@ -177,7 +189,7 @@ impl SharedCholesky {
                     for &(child, to) in &run.children {
                         let rows = symbolic.fronts[child].below.iter();
                         let entries = rows.filter(|&&p| v[p as usize] != 0.0);
-                        let pairs = entries.flat_map(|&p| [f64::from(p), v[p as usize]]);
+                        let pairs = entries.flat_map(|&p| [f64::from(name(p)), v[p as usize]]);
                         post.send(to, std::iter::once(largest).chain(pairs).collect());
                     }
                 }
@@ -185,8 +197,8 @@ impl SharedCholesky {
             for &p in &team.own_rows {
                 let value = std::mem::take(&mut v[p as usize]);
                 if value != 0.0 {
-                    let dof = symbolic.interior[p as usize];
-                    words.extend([k as u64, u64::from(dof), value.to_bits()]);
+                    let scaled = value * scale[symbolic.interior[p as usize] as usize];
+                    words.extend([k as u64, u64::from(name(p)), scaled.to_bits()]);
                 }
             }
             team.ghost_rows.iter().for_each(|&p| v[p as usize] = 0.0);

@@ -30,6 +30,9 @@ pub enum Keep {
     Interior,
 }
 
+/// The position of a dof whose row is not there ([`Symbolic::part`]).
+pub(super) const ABSENT: u32 = u32::MAX;
+
 /// The symbolic factorisation, which depends on the pattern alone: elimination order, fronts, index maps.
 #[derive(Debug)]
 pub struct Symbolic {
@@ -233,6 +236,27 @@ impl Symbolic {
             interior,
             interface: interface.to_vec(),
             position: Vec::new(),
+            fronts,
+            storage,
+        }
+    }
+
+    /// The part of a pattern without an interface in which some rows are left, those of `interior`, of n dofs: the
+    /// fronts that a rank has and those with which they exchange something.
+    pub(super) fn part(
+        interior: Vec<u32>,
+        n: usize,
+        fronts: Vec<Front>,
+        storage: usize,
+    ) -> Symbolic {
+        let mut position = vec![ABSENT; n];
+        for (p, &dof) in (0..).zip(&interior) {
+            position[dof as usize] = p;
+        }
+        Symbolic {
+            interior,
+            interface: Vec::new(),
+            position,
             fronts,
             storage,
         }

@@ -10,21 +10,24 @@ use mpi::topology::{Color, SimpleCommunicator};
 use mpi::traits::Communicator;
 
 use super::deal::{deal, Share};
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::{Front, Symbolic, ABSENT};
 use crate::linalg::sorted::distinct;
 use crate::parallel::post::Address;
 
 /// Ranks that share a factor, and who of them has which front.
 pub struct Team {
     pub(super) comm: SimpleCommunicator,
-    /// The pattern; it has room for the panels of the own fronts alone.
+    /// The pattern; it has room for the panels of the own fronts alone. Of a team that is [narrowed](Team::narrowed) it
+    /// has the own fronts and those with which they exchange something, and the rows of these.
     pub(super) symbolic: Arc<Symbolic>,
     /// The own fronts, in the order in which this rank eliminates them.
     pub(super) own: Vec<usize>,
     /// The same in parts, between messages.
     pub(super) runs: Vec<Run>,
-    /// Where each row is kept, in the order of elimination.
-    places: Vec<Place>,
+    /// Where each dof is kept.
+    pub(super) places: Vec<Place>,
+    /// The number of each dof among those of all ranks; `None`: they are all numbered here.
+    pub(super) names: Option<Vec<u32>>,
     /// The rows of the own fronts, increasing, and the rows of others below them.
     pub(super) own_rows: Vec<u32>,
     pub(super) ghost_rows: Vec<u32>,
@@ -79,11 +82,12 @@ impl Team {
         };
         let own: Vec<usize> = mine(false).chain(mine(true)).collect();
         let runs = runs(&symbolic.fronts, &shares, &own, comm.size() as usize);
-        let places = places(&symbolic.fronts, &shares, comm.size() as usize);
+        let places = places(&symbolic, &shares, comm.size() as usize);
+        let place = |p: u32| places[symbolic.interior[p as usize] as usize];
         let rows = own.iter().map(|&f| &symbolic.fronts[f]);
         let own_rows = distinct(rows.clone().flat_map(|f| f.start as u32..f.end as u32));
         let below = rows.flat_map(|f| f.below.iter().copied());
-        let ghost_rows = distinct(below.filter(|&p| places[p as usize].rank != rank));
+        let ghost_rows = distinct(below.filter(|&p| place(p).rank != rank));
         let symbolic = symbolic.with_panels(&own);
         Team {
             comm,
@@ -91,6 +95,7 @@ impl Team {
             own,
             runs,
             places,
+            names: None,
             own_rows,
             ghost_rows,
         }
@@ -101,24 +106,43 @@ impl Team {
         self.comm.size() > 1 && self.comm.size() == comm.size()
     }
 
-    /// Number of rows.
+    /// Number of dofs that have a number here.
     pub fn n(&self) -> usize {
         self.places.len()
     }
 
     /// Whether this rank has a row, by its place in the order of elimination.
     pub(super) fn has_row(&self, row: usize) -> bool {
-        self.places[row].rank == self.comm.rank() as u32
+        self.has(self.symbolic.interior[row])
     }
 
     /// Whether this rank has the row of a dof.
     pub fn has(&self, dof: u32) -> bool {
-        self.has_row(self.row(dof))
+        self.place(dof).rank == self.comm.rank() as u32
     }
 
-    /// The place of a dof in the order of elimination.
-    pub(super) fn row(&self, dof: u32) -> usize {
-        self.symbolic.position[dof as usize] as usize
+    /// The place of a dof in the order of elimination, if its row is an own one, a ghost, or if there are all rows.
+    pub(super) fn row(&self, dof: u32) -> Option<usize> {
+        let row = self.symbolic.position[dof as usize];
+        (row != ABSENT).then_some(row as usize)
+    }
+
+    /// The number of a dof among those of all ranks.
+    pub(super) fn name(&self, dof: u32) -> u32 {
+        self.names.as_ref().map_or(dof, |names| names[dof as usize])
+    }
+
+    /// The dof with this number among those of all ranks, if it has a number here.
+    pub(super) fn dof(&self, name: u32) -> Option<u32> {
+        match &self.names {
+            Some(names) => names.binary_search(&name).ok().map(|dof| dof as u32),
+            None => Some(name),
+        }
+    }
+
+    /// Whether some dofs have no number here.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.names.is_some()
     }
 
     /// The ranks.
@@ -128,19 +152,17 @@ impl Team {
 
     /// Where a dof of the matrix is kept.
     pub fn place(&self, dof: u32) -> Place {
-        self.places[self.row(dof)]
+        self.places[dof as usize]
     }
 
     /// Where this rank has the entry of a dof in a vector that no rank has whole, if the dof is its own or a ghost.
     pub fn here(&self, dof: u32) -> Option<u32> {
-        let row = self.row(dof);
-        match self.has_row(row) {
-            true => Some(self.places[row].number - self.first_own()),
-            false => {
-                let at = self.ghost_rows.binary_search(&(row as u32)).ok()?;
-                Some((self.own_rows.len() + at) as u32)
-            }
+        if self.has(dof) {
+            return Some(self.place(dof).number - self.first_own());
         }
+        let row = self.row(dof)? as u32;
+        let at = self.ghost_rows.binary_search(&row).ok()?;
+        Some((self.own_rows.len() + at) as u32)
     }
 
     /// The number of rows that this rank has, and of rows of others below its fronts: ghosts. Vectors that no rank has
@@ -151,9 +173,8 @@ impl Team {
 
     /// The number of this rank's first row in vectors that no rank has whole.
     fn first_own(&self) -> u32 {
-        self.own_rows
-            .first()
-            .map_or(0, |&row| self.places[row as usize].number)
+        let first = self.own_dofs().next();
+        first.map_or(0, |dof| self.place(dof).number)
     }
 
     /// The dofs that this rank has, then its ghosts, in the order in which their entries are kept.
@@ -287,8 +308,9 @@ pub fn longest_way(symbolic: &Symbolic, ranks: usize) -> Way {
     before.into_iter().chain(done).fold(Way::default(), most)
 }
 
-/// The place of each row, in the order of elimination.
-fn places(fronts: &[Front], shares: &[Share], size: usize) -> Vec<Place> {
+/// The place of each dof.
+fn places(symbolic: &Symbolic, shares: &[Share], size: usize) -> Vec<Place> {
+    let fronts = &symbolic.fronts;
     // The number of the next row of each rank.
     let mut next = vec![0u32; size + 1];
     for (front, share) in fronts.iter().zip(shares) {
@@ -297,15 +319,18 @@ fn places(fronts: &[Front], shares: &[Share], size: usize) -> Vec<Place> {
     for r in 0..size {
         next[r + 1] += next[r];
     }
-    let mut places = Vec::new();
+    // Dofs in no front are nowhere.
+    let nowhere = Place { rank: 0, number: 0 };
+    let mut places = vec![nowhere; symbolic.position.len()];
     for (front, share) in fronts.iter().zip(shares) {
         let next = &mut next[share.rank as usize];
-        let numbers = *next..*next + front.width() as u32;
-        *next = numbers.end;
-        places.extend(numbers.map(|number| Place {
-            rank: share.rank,
-            number,
-        }));
+        for &dof in &symbolic.interior[front.start..front.end] {
+            places[dof as usize] = Place {
+                rank: share.rank,
+                number: *next,
+            };
+            *next += 1;
+        }
     }
     places
 }

@@ -1,24 +1,26 @@
 //! The balance of forces Gᵀ x = 0 on floating bodies, in variables in which its projector is orthogonal.
 
+use std::rc::Rc;
+
 use mpi::topology::SimpleCommunicator;
 
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gtg::Side;
+use crate::feti::projector::known::Known;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::feti::projector::refined::Refined;
 use crate::feti::projector::rows::Rows;
 use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::sum_all;
 
 /// G (this rank's rows) and the factor of N = GᵀG, r × r, with dependent columns left out.
 pub struct Balance {
     g: Rows,
-    /// Number of columns of G.
-    pub r: usize,
+    /// The columns of G that this rank knows. Vectors of columns are the same wherever they are known.
+    known: Rc<Known>,
     factor: Factor,
 }
 
-/// The factor of N, the same on every rank.
+/// The factor of N.
 enum Factor {
     /// Of few columns, with a choice of pivots.
     Dense(Semidefinite),
@@ -29,23 +31,28 @@ enum Factor {
 impl Balance {
     /// Forms and factors N; `natural` has the G of all candidates, of which `g` are multiples of rows. Collective.
     pub fn new(comm: &SimpleCommunicator, g: Rows, natural: &NaturalCoarse) -> Balance {
-        let r = natural.r;
         let factor = match natural.shape.as_ref().filter(|s| s.team().is_some()) {
             Some(shape) => {
                 let n = shape.product(comm, &g, &g, |_| true);
                 let factor = Gram::new(shape, n.clone());
                 Factor::Sparse(Refined::symmetric(shape, factor, n).into())
             }
-            None => Factor::Dense(Semidefinite::new(&g.product(comm, &g, r, |_| true))),
+            None => Factor::Dense(Semidefinite::new(&g.product(comm, &g, natural.r, |_| true))),
         };
-        Balance { g, r, factor }
+        let known = natural.known().clone();
+        Balance { g, known, factor }
+    }
+
+    /// The columns of G that this rank knows.
+    pub fn known(&self) -> &Known {
+        &self.known
     }
 
     /// Gᵀ x. Collective.
     pub fn forces(&self, comm: &SimpleCommunicator, x: &[f64]) -> Vec<f64> {
-        let mut c = vec![0.0; self.r];
+        let mut c = vec![0.0; self.known.n()];
         self.g.add_transpose(x, &mut c);
-        sum_all(comm, &mut c);
+        self.known.sum(comm, &mut c);
         c
     }
 
@@ -82,7 +89,7 @@ impl Balance {
         let forces = self.forces(comm, x);
         let mut c = forces.clone();
         self.solve(&mut c);
-        let square: f64 = forces.iter().zip(&c).map(|(f, c)| f * c).sum();
+        let [square] = self.known.total(comm, |k| [forces[k] * c[k]]);
         square.max(0.0).sqrt()
     }
 }

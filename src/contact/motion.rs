@@ -18,6 +18,7 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::held::moving;
+use crate::feti::projector::motion::Motion;
 use crate::feti::projector::rows::Rows;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
@@ -68,7 +69,7 @@ pub fn check_many(
 /// # Errors
 /// As [`check`], and bodies that nothing holds.
 pub fn check_held(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
-    let held = dual.natural.check_held(problem, load);
+    let held = dual.natural.check_held(dual.comm(), problem, load);
     if held.is_err() {
         check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
     }
@@ -85,10 +86,11 @@ fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]
     if natural.r == 0 {
         return Ok(());
     }
-    let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
+    let size = load.largest;
     let (rest, tolerance) = if natural.r <= FEW {
         let (columns, free) = directions(dual.comm(), jump, &natural.all, natural.r);
-        (nnls(&columns, &load.e, &free).1, BALANCE)
+        let rest = nnls(&columns, &load.e, &free).1;
+        (Motion((0..).zip(rest).collect()), BALANCE)
     } else {
         let wanted = (&load.e[..], 0.1 * NEARLY * size);
         let found = rigid::outside(dual.comm(), natural, jump, wanted, lambda);
@@ -115,7 +117,7 @@ pub fn first(
     let mut stiff = dual.stiffness.compliance_of_rows(problem)?;
     let rows = stiff.iter_mut().filter(|c| **c > 0.0);
     rows.for_each(|c| *c = 1.0 / *c);
-    let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
+    let size = load.largest;
     let law = (stiff, jump.gap.clone());
     let (e, enough) = (&load.e[..], 0.1 * NEARLY * size);
     match rigid::first(dual.comm(), &dual.natural, jump, (e, enough), &law) {
@@ -130,10 +132,10 @@ pub fn first(
 pub fn pushed_away(
     problem: &Substructures,
     dual: &Dual,
-    rest: &[f64],
+    rest: &Motion,
     tolerance: f64,
 ) -> Result<()> {
-    let left = rest.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let left = rest.largest();
     if left <= tolerance {
         return Ok(());
     }

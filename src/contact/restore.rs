@@ -8,10 +8,12 @@ use mpi::traits::Communicator;
 
 use super::motion::{pushed_away, BALANCE, NEARLY};
 use crate::feti::operators::dual::Dual;
-use crate::feti::projector::balance::KernelLoad;
+use crate::feti::projector::balance::{Along, KernelLoad};
 use crate::feti::projector::by_column::ByColumn;
+use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::motion::Motion;
+use crate::linalg::sorted::distinct;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
@@ -41,17 +43,18 @@ pub fn restore(
     if gram.unheld.is_empty() {
         return Ok(0);
     }
-    let body = natural.bodies();
-    let mut free = Free::new(gram.unheld.clone(), body, problem.n_bodies);
+    let mut free = Free::new(gram.unheld.clone(), &natural.columns);
     drop(gram);
-    let g = &natural.all;
-    let (mut restored, mut rest) = (0, vec![0.0; natural.r]);
+    let (g, known) = (&natural.all, natural.known());
+    // No other columns come into motions that are combined.
+    let load_along = load.along(comm, known, &free.motions);
+    let (mut restored, mut rest) = (0, Motion::default());
     loop {
-        let driven = free.driven(load);
+        let driven = free.driven(&load_along);
         if driven.is_empty() {
             break;
         }
-        let by_column = ByColumn::new(natural.r, driven.iter().map(|d| &d.motion));
+        let by_column = ByColumn::new(known, driven.iter().map(|d| &d.motion));
         // For each motion the best row on this rank.
         let mut best: Vec<Option<(f64, usize)>> = vec![None; driven.len()];
         let candidates = jump.rows_between_bodies();
@@ -68,7 +71,10 @@ pub fn restore(
         }
         let words = best.iter().enumerate().filter_map(|(d, best)| {
             let (score, i) = (*best)?;
-            Some(Offer::pack(d, score, i, jump.inequality[i], g.entries(i)))
+            let (columns, values) = g.entries(i);
+            let names = columns.iter().map(|&c| known.name(c));
+            let kind = jump.inequality[i];
+            Some(Offer::pack([d, i], score, kind, (names, values)))
         });
         let words: Vec<u64> = words.flatten().collect();
         let mut offers: Vec<Option<Offer>> = driven.iter().map(|_| None).collect();
@@ -87,8 +93,8 @@ pub fn restore(
             .zip(&offers)
             .filter(|(_, offer)| offer.is_none())
         {
-            let (work, square) = (d.motion.dot(&load.e), d.motion.square());
-            d.motion.add(work / square, &mut rest);
+            let ([work, _], square) = (load_along.work(&d.motion), d.motion.square());
+            rest = rest.plus(work / square, &d.motion);
             unopposed.push(d.number);
         }
         free.forget(&unopposed);
@@ -100,7 +106,7 @@ pub fn restore(
         }
         for offer in offers {
             // Rows before it may have taken its motion.
-            if free.hold(body, &offer, load) {
+            if free.hold(&natural.columns, &offer, &load_along) {
                 restored += 1;
                 if offer.rank == comm.rank() as usize {
                     active[offer.row] = true;
@@ -108,8 +114,7 @@ pub fn restore(
             }
         }
     }
-    let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
-    pushed_away(problem, dual, &rest, NEARLY * size)?;
+    pushed_away(problem, dual, &rest, NEARLY * load.largest)?;
     Ok(restored)
 }
 
@@ -120,22 +125,22 @@ struct Offer {
     rank: usize,
     row: usize,
     inequality: bool,
+    /// The names of its columns, and the values.
     columns: Vec<u32>,
     values: Vec<f64>,
 }
 
 impl Offer {
     fn pack(
-        motion: usize,
+        [motion, row]: [usize; 2],
         score: f64,
-        row: usize,
         inequality: bool,
-        (columns, values): (&[u32], &[f64]),
+        (columns, values): (impl Iterator<Item = u32>, &[f64]),
     ) -> Vec<u64> {
         let kind = u64::from(inequality);
         let mut words = vec![motion as u64, score.to_bits(), row as u64, kind];
-        words.push(columns.len() as u64);
-        words.extend(columns.iter().map(|&c| u64::from(c)));
+        words.push(values.len() as u64);
+        words.extend(columns.map(u64::from));
         words.extend(values.iter().map(|v| v.to_bits()));
         words
     }
@@ -173,41 +178,50 @@ struct Free {
     motions: Vec<Motion>,
     /// The largest coefficient of each motion.
     largest: Vec<f64>,
-    /// The motions of each group, by the lowest of its bodies.
+    /// The bodies that move, increasing; only they have places in groups.
+    bodies: Vec<u32>,
+    /// The motions of each group, by the place of the lowest of its bodies.
     members: Vec<Vec<usize>>,
     groups: UnionFind,
 }
 
 impl Free {
-    fn new(motions: Vec<Motion>, body: &[u32], n_bodies: usize) -> Free {
-        let mut groups = UnionFind::new(n_bodies);
-        for motion in &motions {
-            let mut bodies = motion.0.iter().map(|e| body[e.0 as usize] as usize);
-            if let Some(first) = bodies.next() {
-                bodies.for_each(|b| groups.join(first, b));
-            }
+    fn new(motions: Vec<Motion>, columns: &KernelColumns) -> Free {
+        let of = |motion: &Motion| -> Vec<u32> {
+            let mut bodies: Vec<u32> = motion.0.iter().map(|e| columns.body(e.0)).collect();
+            bodies.dedup();
+            bodies
+        };
+        let moved: Vec<Vec<u32>> = motions.iter().map(of).collect();
+        let bodies = distinct(moved.iter().flatten().copied());
+        let place = |b: u32| bodies.binary_search(&b).expect("a body that moves");
+        let mut groups = UnionFind::new(bodies.len());
+        for list in &moved {
+            let joined = list.iter().skip(1);
+            joined.for_each(|&b| groups.join(place(list[0]), place(b)));
         }
-        let mut members = vec![Vec::new(); n_bodies];
-        for (m, motion) in motions.iter().enumerate() {
-            if let Some(&(c, _)) = motion.0.first() {
-                members[groups.find(body[c as usize] as usize)].push(m);
+        let mut members = vec![Vec::new(); bodies.len()];
+        for (m, list) in moved.iter().enumerate() {
+            if let Some(&first) = list.first() {
+                members[groups.find(place(first))].push(m);
             }
         }
         Free {
             largest: motions.iter().map(Motion::largest).collect(),
             motions,
+            bodies,
             members,
             groups,
         }
     }
 
     /// The work of the load on a motion; `None` if it is rounding.
-    fn gain(&self, m: usize, load: &KernelLoad) -> Option<f64> {
-        let work = self.motions[m].dot(&load.e);
-        (work.abs() > BALANCE * self.motions[m].size(&load.size)).then_some(work)
+    fn gain(&self, m: usize, load: &Along) -> Option<f64> {
+        let [work, size] = load.work(&self.motions[m]);
+        (work.abs() > BALANCE * size).then_some(work)
     }
 
-    fn driven(&self, load: &KernelLoad) -> Vec<Driven> {
+    fn driven(&self, load: &Along) -> Vec<Driven> {
         let mut out = Vec::new();
         for &number in self.members.iter().flatten() {
             if let Some(work) = self.gain(number, load) {
@@ -230,12 +244,11 @@ impl Free {
     }
 
     /// Lets a row hold if it opposes a motion that is still driven. Returns whether it does.
-    fn hold(&mut self, body: &[u32], row: &Offer, load: &KernelLoad) -> bool {
-        let mut touched: Vec<usize> = row
-            .columns
-            .iter()
-            .map(|&c| self.groups.find(body[c as usize] as usize))
-            .collect();
+    fn hold(&mut self, columns: &KernelColumns, row: &Offer, load: &Along) -> bool {
+        let of_row = row.columns.iter().map(|&c| columns.body(c));
+        let moved = of_row.filter_map(|b| self.bodies.binary_search(&b).ok());
+        let moved: Vec<usize> = moved.collect();
+        let mut touched: Vec<usize> = moved.into_iter().map(|b| self.groups.find(b)).collect();
         touched.sort_unstable();
         touched.dedup();
         let of = touched.iter().flat_map(|&g| &self.members[g]);

@@ -54,7 +54,7 @@ pub fn outside(
     jump: &Jump,
     (e, enough): (&[f64], f64),
     lambda: &[f64],
-) -> Option<Vec<f64>> {
+) -> Option<Motion> {
     let pushes = |(&l, &unilateral): (&f64, &bool)| if unilateral { l.max(0.0) } else { l };
     let pre: Vec<f64> = lambda
         .iter()
@@ -65,7 +65,7 @@ pub fn outside(
     let law = (vec![1.0; jump.n_owned], pre);
     let mut springs = Springs::new(comm, natural, jump, e, &law);
     match springs.balance(enough, begun) {
-        (_, Balanced::Carried) => Some(vec![0.0; natural.r]),
+        (_, Balanced::Carried) => Some(Motion::default()),
         (_, Balanced::Driven(away)) => Some(away),
         (_, Balanced::Undecided) => None,
     }
@@ -77,7 +77,7 @@ pub enum First {
     /// that no rigid motion reaches.
     At(Vec<f64>, Vec<bool>),
     /// The rows cannot carry this part of the load.
-    Nowhere(Vec<f64>),
+    Nowhere(Motion),
     /// It is not decided whether they can.
     Unknown,
 }
@@ -114,7 +114,7 @@ enum Balanced {
     /// They do.
     Carried,
     /// They do not: this part of the load drives a motion that no row stands against.
-    Driven(Vec<f64>),
+    Driven(Motion),
     Undecided,
 }
 
@@ -143,15 +143,17 @@ impl<'a> Springs<'a> {
     ) -> Springs<'a> {
         let between = jump.rows_between_bodies();
         let rows: Vec<usize> = between.filter(|&i| jump.is_candidate(i)).collect();
-        let mut weak = vec![0.0; natural.r];
+        let known = natural.known();
+        let mut weak = vec![0.0; known.n()];
         for &i in &rows {
             let (columns, values) = natural.all.entries(i);
             for (&c, g) in columns.iter().zip(values) {
                 weak[c as usize] += WEAK * law.0[i] * g * g;
             }
         }
-        sum_all(comm, &mut weak);
-        let mean = weak.iter().sum::<f64>() / natural.r as f64;
+        known.sum(comm, &mut weak);
+        let [sum] = known.total(comm, |c| [weak[c]]);
+        let mean = sum / natural.r as f64;
         // A motion that no row sees has a spring, too.
         for w in weak.iter_mut().filter(|w| **w == 0.0) {
             *w = if mean > 0.0 { mean } else { 1.0 };
@@ -173,8 +175,8 @@ impl<'a> Springs<'a> {
     /// The motion α at which springs carry the load up to `enough`, if they can. `begun` says that they nearly do at
     /// α = 0. Collective.
     fn balance(&mut self, enough: f64, begun: bool) -> (Vec<f64>, Balanced) {
-        let r = self.natural.r;
-        let (mut alpha, mut anchor) = (vec![0.0; r], vec![0.0; r]);
+        let known = self.natural.known();
+        let (mut alpha, mut anchor) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         let weak = self.weak.clone();
         let first = if begun { 1.0 } else { FIRST };
         for round in 0..ROUNDS {
@@ -182,8 +184,9 @@ impl<'a> Springs<'a> {
             self.weak = weak.iter().map(|w| softer * w).collect();
             self.minimise(&mut alpha, &anchor, begun || round > 0);
             let along: Vec<f64> = alpha.iter().zip(&anchor).map(|(a, b)| a - b).collect();
-            let mut rest = along.iter().zip(&self.weak).map(|(a, w)| a * w);
-            if rest.all(|v| v.abs() <= enough) {
+            let rest: Vec<f64> = along.iter().zip(&self.weak).map(|(a, w)| a * w).collect();
+            let is_little = rest.iter().all(|v| v.abs() <= enough);
+            if !any(self.comm, !is_little) {
                 return (alpha, Balanced::Carried);
             }
             // While ε is large, bodies move that will come to rest.
@@ -251,8 +254,9 @@ impl<'a> Springs<'a> {
                 .iter_mut()
                 .zip(&along)
                 .for_each(|(s, d)| *s += t * d);
-            let moved = d.iter().fold(0.0f64, |m, d| m.max(d.abs())) * t;
-            let size = alpha.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+            let known = self.natural.known();
+            let moved = known.largest(self.comm, &d) * t;
+            let size = known.largest(self.comm, alpha);
             if moved <= 1e-14 * size {
                 return;
             }
@@ -270,7 +274,7 @@ impl<'a> Springs<'a> {
                 }
             }
         }
-        sum_all(self.comm, &mut force);
+        self.natural.known().sum(self.comm, &mut force);
         (0..alpha.len())
             .map(|c| self.e[c] - force[c] - self.weak[c] * (alpha[c] - anchor[c]))
             .collect()
@@ -284,11 +288,12 @@ impl<'a> Springs<'a> {
         d: &[f64],
         (stretch, along): (&[f64], &[f64]),
     ) -> f64 {
-        let mut constant = [0.0, 0.0];
-        for c in 0..d.len() {
-            constant[0] += d[c] * (self.weak[c] * (alpha[c] - anchor[c]) - self.e[c]);
-            constant[1] += d[c] * d[c] * self.weak[c];
-        }
+        let constant = self.natural.known().total(self.comm, |c| {
+            [
+                d[c] * (self.weak[c] * (alpha[c] - anchor[c]) - self.e[c]),
+                d[c] * d[c] * self.weak[c],
+            ]
+        });
         let slope = |t: f64| {
             let mut sums = [0.0, 0.0];
             for k in 0..stretch.len() {
@@ -327,27 +332,22 @@ impl<'a> Springs<'a> {
     }
 
     /// The part of the load along `motion`, if the load drives it and no row stands against it. Collective.
-    fn allowed(&self, motion: &[f64]) -> Option<Vec<f64>> {
-        let largest = motion.iter().fold(0.0f64, |m, a| m.max(a.abs()));
-        let entries = (0..).zip(motion.iter().copied());
-        let cut = Motion(
-            entries
-                .filter(|e: &(u32, f64)| e.1.abs() > AGAINST * largest)
-                .collect(),
-        );
-        let mut alpha = vec![0.0; motion.len()];
-        cut.add(1.0, &mut alpha);
+    fn allowed(&self, motion: &[f64]) -> Option<Motion> {
+        let known = self.natural.known();
+        let largest = known.largest(self.comm, motion);
+        let cut = |a: &f64| if a.abs() > AGAINST * largest { *a } else { 0.0 };
+        let mut alpha: Vec<f64> = motion.iter().map(cut).collect();
         let stands = self.along(&alpha).iter().zip(&self.rows).any(|(s, &i)| {
             let size: f64 = self.natural.all.entries(i).1.iter().map(|g| g.abs()).sum();
             let work = if self.jump.inequality[i] { *s } else { s.abs() };
             work > 10.0 * AGAINST * size * largest
         });
-        let work = cut.dot(self.e);
+        let terms = |c: usize| [alpha[c] * self.e[c], alpha[c] * alpha[c]];
+        let [work, square] = known.total(self.comm, terms);
         if any(self.comm, stands) || work <= 0.0 {
             return None;
         }
-        alpha.fill(0.0);
-        cut.add(work / cut.square(), &mut alpha);
-        Some(alpha)
+        alpha.iter_mut().for_each(|a| *a *= work / square);
+        Some(known.motion(self.comm, &alpha, 0.0))
     }
 }

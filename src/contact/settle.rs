@@ -12,15 +12,15 @@ use crate::parallel::exchange::gather_all;
 /// A row a z ≤ b: a as (motion, coefficient as bits), scaled to a largest coefficient of 1.
 type Row = Vec<(u64, u64)>;
 
-/// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors. It
-/// is a combination of those motions that nothing holds or drives. `None` if there is no such motion. Collective.
+/// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors that
+/// are known here. It is a combination of those motions that nothing holds or drives. `None` if there is no such motion. Collective.
 pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
     let motions = dual.natural.unheld();
     if motions.is_empty() {
         return None;
     }
     let (comm, jump, g) = (dual.comm(), &dual.stiffness.jump, &dual.natural.all);
-    let by_column = ByColumn::new(dual.natural.r, motions.iter());
+    let by_column = ByColumn::new(dual.natural.known(), motions.iter());
     // Of several rows with the same a only the smallest b matters.
     let mut tightest: BTreeMap<Row, f64> = BTreeMap::new();
     let meet = |all: &mut BTreeMap<Row, f64>, a: Row, b: f64| {
@@ -77,11 +77,10 @@ pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
         let Some(z) = least(members, &rows) else {
             continue;
         };
-        let alpha = alpha.get_or_insert_with(|| vec![0.0; dual.natural.r]);
-        members
-            .iter()
-            .zip(z)
-            .for_each(|(&m, z)| motions[m].add(z, alpha));
+        let known = dual.natural.known();
+        let alpha = alpha.get_or_insert_with(|| vec![0.0; known.n()]);
+        let parts = members.iter().zip(z);
+        parts.for_each(|(&m, z)| known.add(z, &motions[m], alpha));
     }
     alpha
 }

@@ -67,7 +67,6 @@ pub(super) fn solve(
         Ok((run.finish(&steps, seconds, status)?, steps))
     };
     let mut search = Search::new(method, settings, &state)?;
-    state.mu.resize(search.a.balance.r, 0.0);
     // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
@@ -122,7 +121,7 @@ pub(super) fn solve(
         }
         if jumps < JUMPS {
             jumps += 1;
-            search.restart(comm, &run, &mut state)?;
+            search.restart(comm, &run)?;
         }
         search.lagrangian = f64::NEG_INFINITY;
     }
@@ -140,6 +139,8 @@ struct Search<'a> {
     fixed: Vec<bool>,
     contact: std::ops::Range<usize>,
     x: Vec<f64>,
+    /// μ, in the columns that this rank knows.
+    mu: Vec<f64>,
     /// M relative to ϱ.
     m: f64,
     lagrangian: f64,
@@ -197,8 +198,14 @@ impl<'a> Search<'a> {
             true => (start[i] - shift[i]).max(lower[i]),
             false => first[i],
         });
+        let known = a.balance.known();
+        let mu = match state.mu.is_empty() {
+            true => vec![0.0; known.n()],
+            false => known.part_of(&state.mu),
+        };
         Ok(Search {
             x: x.collect(),
+            mu,
             fixed: all.iter().map(|on| !on).collect(),
             contact: jump.rows_between_bodies(),
             a,
@@ -213,12 +220,7 @@ impl<'a> Search<'a> {
 
     /// Continues from the λ of an active-set step and the μ that belongs to it. With w = S (c − B u) on the rows that
     /// do not hold, the optimality of L reads G μ = (I − P) w. Collective.
-    fn restart(
-        &mut self,
-        comm: &SimpleCommunicator,
-        run: &ActiveSet,
-        state: &mut State,
-    ) -> Result<()> {
+    fn restart(&mut self, comm: &SimpleCommunicator, run: &ActiveSet) -> Result<()> {
         let scaled = self.a.scaled(&run.state.lambda);
         for (i, x) in self.x.iter_mut().enumerate() {
             *x = (scaled[i] - self.shift[i]).max(self.lower[i]);
@@ -229,8 +231,8 @@ impl<'a> Search<'a> {
                 false => -run.gaps[i] * self.a.scale[i],
             })
             .collect();
-        state.mu = self.a.balance.forces(comm, &w);
-        self.a.balance.solve(&mut state.mu);
+        self.mu = self.a.balance.forces(comm, &w);
+        self.a.balance.solve(&mut self.mu);
         Ok(())
     }
 
@@ -245,7 +247,7 @@ impl<'a> Search<'a> {
         let clock = Instant::now();
         let (rho, size) = (self.a.rho, self.size);
         let mut b = self.b.clone();
-        self.a.balance.add(-1.0, &state.mu, &mut b); /*   b − G μ         */
+        self.a.balance.add(-1.0, &self.mu, &mut b); /*    b − G μ         */
         let balance = self.a.balance.clone();
         let setting = Setting {
             comm,
@@ -272,7 +274,8 @@ impl<'a> Search<'a> {
         self.lagrangian = value;
         let mut c = balance.forces(comm, &run.x);
         balance.solve(&mut c);
-        state.mu.iter_mut().zip(&c).for_each(|(m, c)| *m += rho * c);
+        self.mu.iter_mut().zip(&c).for_each(|(m, c)| *m += rho * c);
+        state.mu = balance.known().whole(comm, &self.mu);
 
         // Rows on their bound with a gradient that points into the feasible set.
         let wrong = (0..run.x.len())

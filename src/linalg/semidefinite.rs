@@ -105,11 +105,6 @@ impl Semidefinite {
         least
     }
 
-    /// Number of columns.
-    pub fn n(&self) -> usize {
-        self.n
-    }
-
     /// Rank of the matrix.
     pub fn rank(&self) -> usize {
         self.kept.len()

@@ -10,6 +10,7 @@ use super::panels::Panels;
 use super::sparse::{self, Sparse};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
+use crate::feti::projector::rows::Rows;
 use crate::feti::projector::sweep::{self, Column};
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::dense::Dense;
@@ -84,11 +85,12 @@ impl Matrices {
             let natural = &dual.natural;
             let start = natural.columns.start();
             let near = |b: usize| graph.near[b].clone();
-            let g = Panels::new(&sweep::kernel_columns(&natural.g, start, near));
+            let named = |rows: &Rows| rows.named(natural.known());
+            let g = Panels::new(&sweep::kernel_columns(&named(&natural.g), start, near));
             g.add_product(&w, &mut x, (0, 0));
             sum_all(dual.comm(), &mut x.data);
             for c in 0..k {
-                natural.solve_gtg(x.col_mut(c))?;
+                natural.solve_gtg(dual.comm(), x.col_mut(c))?;
             }
             // Q = M⁻¹ leads to the rows of neighbours.
             let wide = natural.projector == ProjectorKind::Preconditioner;
@@ -96,7 +98,7 @@ impl Matrices {
                 true => graph.around(&graph.near[b]),
                 false => near(b),
             };
-            let columns = sweep::kernel_columns(natural.qg(), start, reach);
+            let columns = sweep::kernel_columns(&named(natural.qg()), start, reach);
             fqg = Panels::new(&sweep::images(&like, graph, &columns, f)?);
             qg = Panels::new(&columns);
         }

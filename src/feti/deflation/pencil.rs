@@ -117,7 +117,9 @@ impl<'a> Pencil<'a> {
         for (part, body) in self.parts.iter().zip(&self.bodies) {
             let columns = of(body);
             for i in part.clone() {
-                for (c, value) in self.dual.natural.g.row(self.rows[i] as usize) {
+                let natural = &self.dual.natural;
+                for (c, value) in natural.g.row(self.rows[i] as usize) {
+                    let c = natural.known().name(c as u32) as usize;
                     if columns.contains(&c) {
                         g[c - columns.start][i] = value;
                     }

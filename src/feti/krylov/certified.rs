@@ -27,7 +27,7 @@ use super::recovery::LinearSolution;
 use super::refinement::remainder;
 use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
-use crate::parallel::exchange::{max_all, sum_all};
+use crate::parallel::exchange::{any, max_all, sum_all};
 use crate::Result;
 
 /// Better pairs are made until the upper bound is at most this many times the lower one.
@@ -188,7 +188,8 @@ impl LinearMethod {
         let loads = Loads::of(dual, &forces, None);
         // The size of the terms that cancel in the forces on bodies: those of the loads and of the multipliers.
         let kernel = loads.kernel.e.iter().zip(self.kernel_size(&lambda)?);
-        if kernel.clone().any(|(e, size)| e.abs() > BALANCED * size) {
+        let pushed = kernel.clone().any(|(e, size)| e.abs() > BALANCED * size);
+        if any(dual.comm(), pushed) {
             return Ok(Err(Uncertified::Multipliers));
         }
         let inside = work_inside(dual, &loads, &forces);
@@ -238,7 +239,8 @@ impl LinearMethod {
         Ok(works.sum())
     }
 
-    /// The size of the terms that cancel in the forces on floating bodies, for each of their motions. Collective.
+    /// The size of the terms that cancel in the forces on floating bodies, for each of their motions that is
+    /// known here. Collective.
     fn kernel_size(&self, lambda: &[f64]) -> Result<Vec<f64>> {
         let dual = &*self.dual();
         let loads: Vec<&[f64]> = self.problem.local.iter().map(|s| &s.f[..]).collect();
@@ -251,7 +253,7 @@ impl LinearMethod {
                 pulls[c] += (g * l).abs();
             }
         }
-        sum_all(dual.comm(), &mut pulls);
+        dual.natural.known().sum(dual.comm(), &mut pulls);
         size.iter_mut().zip(pulls).for_each(|(s, p)| *s += p);
         Ok(size)
     }

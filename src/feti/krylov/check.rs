@@ -5,7 +5,7 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::parallel::exchange::{max_all, sum_all};
+use crate::parallel::exchange::max_all;
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
@@ -249,20 +249,21 @@ impl Check<'_> {
     /// Largest |Rᵀ v| relative to the terms of the sum or to `scale`, whichever is larger.
     fn work_on_kernels(&self, v: Vec<Vec<f64>>, scale: f64) -> Result<f64> {
         let natural = &self.dual.natural;
-        let mut sums = vec![0.0; 2 * natural.r];
+        let known = natural.known();
+        let (mut work, mut size) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         for (j, v) in v.iter().enumerate() {
-            let start = natural.columns.of(self.problem.local[j].body).start;
+            let start = natural.first_column(j);
             for c in 0..natural.kernels[j].cols {
                 for (r, v) in natural.kernels[j].col(c).iter().zip(v) {
-                    sums[start + c] += r * v;
-                    sums[natural.r + start + c] += (r * v).abs();
+                    work[start + c] += r * v;
+                    size[start + c] += (r * v).abs();
                 }
             }
         }
-        sum_all(self.dual.comm(), &mut sums);
-        let (work, size) = sums.split_at(natural.r);
+        known.sum(self.dual.comm(), &mut work);
+        known.sum(self.dual.comm(), &mut size);
         let largest = |s: &[f64]| s.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        Ok(self.relative(largest(work), largest(size).max(scale)))
+        Ok(self.relative(largest(&work), largest(&size).max(scale)))
     }
 
     /// Bᵀ P λ does no work on rigid motions: Rᵀ Bᵀ P λ = 0, computed with B and not with G.

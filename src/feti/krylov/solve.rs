@@ -285,7 +285,8 @@ impl LinearMethod {
     fn start(&self) -> Result<Iterate> {
         let dual = self.dual();
         let loads = Loads::new(&self.problem, &dual);
-        dual.natural.check_held(&self.problem, &loads.kernel)?;
+        let natural = &dual.natural;
+        natural.check_held(dual.comm(), &self.problem, &loads.kernel)?;
         let at = Iterate::new(&dual, loads)?;
         at.begin(&dual)?;
         Ok(at)

@@ -6,21 +6,24 @@ use rustc_hash::FxHashMap;
 
 use super::motion::{Motion, NOTHING_SOLVED};
 use super::pattern::Pattern;
+use super::shape::Shape;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, gather_all};
 
-/// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
-/// diagonal. The rank that has the first column of a body looks at it. Collective.
-pub(super) fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
-    let elsewhere = rows_of_others(pattern, team, a);
+/// The motions of single bodies that nothing holds, each with the name of the column that is left out for it. `a` has a
+/// unit diagonal. The rank that has the first column of a body looks at it. Collective.
+pub(super) fn alone(shape: &Shape, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
+    let (pattern, known) = (&shape.pattern, &*shape.known);
+    let bodies = bodies_here(pattern, team);
+    let elsewhere = rows_of_others(shape, team, a, &bodies);
     // [column, number of entries, (column, coefficient)…] for each motion.
     let mut words: Vec<u64> = Vec::new();
-    for body in 0..pattern.n_bodies() {
-        let columns = pattern.columns(body);
-        if columns.is_empty() || !team.has(columns.start as u32) {
+    for columns in bodies.into_iter().map(|b| pattern.columns(b as usize)) {
+        if !team.has(columns.start as u32) {
             continue;
         }
         let first = columns.start;
@@ -36,12 +39,9 @@ pub(super) fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> V
             let entries = (columns.clone()).zip(&v);
             let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
             let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
-            words.extend([(first + k) as u64, motion.len() as u64]);
-            words.extend(
-                motion
-                    .iter()
-                    .flat_map(|(c, v)| [u64::from(*c), v.to_bits()]),
-            );
+            let name = |c: u32| u64::from(known.name(c));
+            words.extend([name((first + k) as u32), motion.len() as u64]);
+            words.extend(motion.iter().flat_map(|(c, v)| [name(*c), v.to_bits()]));
         }
     }
     let all = gather_all(team.comm(), &words).concat();
@@ -59,19 +59,26 @@ pub(super) fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> V
     out
 }
 
+/// The bodies with columns that this rank has, increasing.
+fn bodies_here(pattern: &Pattern, team: &Team) -> Vec<u32> {
+    let bodies = team.own_dofs().map(|c| pattern.bodies()[c as usize]);
+    distinct(bodies)
+}
+
 /// Of bodies whose first column this rank has: the rows of their other columns that other ranks have, in the columns
 /// of the body. Collective.
-fn rows_of_others(pattern: &Pattern, team: &Team, a: &Csr) -> FxHashMap<u32, Vec<f64>> {
+fn rows_of_others(shape: &Shape, team: &Team, a: &Csr, bodies: &[u32]) -> FxHashMap<u32, Vec<f64>> {
+    let (pattern, known) = (&shape.pattern, &*shape.known);
     let size = team.comm().size() as usize;
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
-    for body in 0..pattern.n_bodies() {
-        let columns = pattern.columns(body);
-        if columns.is_empty() || team.has(columns.start as u32) {
+    for columns in bodies.iter().map(|&b| pattern.columns(b as usize)) {
+        if team.has(columns.start as u32) {
             continue;
         }
         for row in columns.clone().filter(|&c| team.has(c as u32)) {
             let to = &mut outgoing[team.place(columns.start as u32).rank as usize];
-            to.extend([row as u64, columns.len() as u64]);
+            let name = known.name(row as u32);
+            to.extend([u64::from(name), columns.len() as u64]);
             to.extend(columns.clone().map(|c| a.get(row, c).to_bits()));
         }
     }
@@ -81,7 +88,7 @@ fn rows_of_others(pattern: &Pattern, team: &Team, a: &Csr) -> FxHashMap<u32, Vec
         while let [row, n, tail @ ..] = rest {
             let (values, tail) = tail.split_at(*n as usize);
             let values = values.iter().map(|&w| f64::from_bits(w));
-            out.insert(*row as u32, values.collect());
+            out.insert(known.number(*row as u32), values.collect());
             rest = tail;
         }
     }

@@ -3,6 +3,8 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::gtg::{Gtg, Side};
+use super::known::Known;
+use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use crate::feti::settings::ProjectorKind;
 use crate::parallel::exchange::sum_all;
@@ -17,10 +19,48 @@ const VAST: f64 = 1e3;
 /// The work of the loads on the kernels: e = Rᵀ g, and the size of the terms that may cancel in it.
 #[derive(Debug, Clone, Default)]
 pub struct KernelLoad {
-    /// e, length r.
+    /// e, a vector of columns: the same wherever they are known.
     pub e: Vec<f64>,
     /// For each entry of e the largest |R| times Σ|f|. Loads inside a subdomain may cancel before they reach g.
     pub size: Vec<f64>,
+    /// The largest of all sizes.
+    pub largest: f64,
+}
+
+impl KernelLoad {
+    /// Its entries at the columns of motions. The same on every rank. Collective.
+    pub fn along(&self, comm: &SimpleCommunicator, known: &Known, motions: &[Motion]) -> Along {
+        let (names, [e, size]) = known.at(comm, motions, [&self.e, &self.size]);
+        Along { names, e, size }
+    }
+}
+
+/// The work of the loads on some kernel vectors.
+#[derive(Debug, Clone, Default)]
+pub struct Along {
+    /// The names of their columns, increasing.
+    names: Vec<u32>,
+    e: Vec<f64>,
+    size: Vec<f64>,
+}
+
+impl Along {
+    /// The work on a motion, and the size of the terms that may cancel in it.
+    ///
+    /// # Panics
+    /// If it has other columns.
+    pub fn work(&self, motion: &Motion) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for (c, v) in &motion.0 {
+            let at = self
+                .names
+                .binary_search(c)
+                .expect("a column that was asked for");
+            sums[0] += v * self.e[at];
+            sums[1] += (v * self.size[at]).abs();
+        }
+        sums
+    }
 }
 
 impl NaturalCoarse {
@@ -31,7 +71,8 @@ impl NaturalCoarse {
         f: &[&[f64]],
         g: &[Vec<f64>],
     ) -> KernelLoad {
-        let mut e = vec![0.0; 2 * self.r];
+        let known = self.known();
+        let (mut e, mut size) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         for (j, kernel) in self.kernels.iter().enumerate() {
             let load: f64 = f[j].iter().map(|f| f.abs()).sum();
             for c in 0..kernel.cols {
@@ -39,12 +80,13 @@ impl NaturalCoarse {
                 let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
                 let work = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
                 e[at] += work.sum::<f64>();
-                e[self.r + at] += largest * load;
+                size[at] += largest * load;
             }
         }
-        sum_all(comm, &mut e);
-        let size = e.split_off(self.r);
-        KernelLoad { e, size }
+        known.sum(comm, &mut e);
+        known.sum(comm, &mut size);
+        let largest = known.largest(comm, &size);
+        KernelLoad { e, size, largest }
     }
 
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
@@ -83,7 +125,7 @@ impl NaturalCoarse {
         // The second pass recovers the digits that a badly conditioned Gᵀ Q G costs.
         let passes = if solver.needs_no_second() { 1 } else { 2 };
         for _ in 0..passes {
-            let mut c = vec![0.0; self.r];
+            let mut c = vec![0.0; self.known().n()];
             self.g.add_transpose(&lambda.array()?, &mut c);
             c.iter_mut().for_each(|c| *c = -*c);
             let least = choose.then(|| self.least(comm, solver, c.clone(), &load.e));
@@ -114,7 +156,7 @@ impl NaturalCoarse {
         mut c: Vec<f64>,
         e: &[f64],
     ) -> Vec<f64> {
-        sum_all(comm, &mut c);
+        self.known().sum(comm, &mut c);
         c.iter_mut().zip(e).for_each(|(c, e)| *c += e);
         solver.gram.solve(&mut c);
         let mut forces = vec![0.0; self.g.n()];
@@ -125,7 +167,7 @@ impl NaturalCoarse {
     /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ), in the columns of this
     /// rank's bodies; other entries are not to be read. Collective.
     pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
-        let mut c = vec![0.0; self.r];
+        let mut c = vec![0.0; self.known().n()];
         let qg = self.qg();
         qg.add_transpose(&jump.array()?, &mut c);
         c.iter_mut().for_each(|v| *v = -*v);

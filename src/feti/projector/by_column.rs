@@ -1,24 +1,28 @@
 //! Motions by the columns in which they have coefficients: what a row does to many of them.
 
+use super::known::Known;
 use super::motion::Motion;
 
-/// Motions by the columns in which they have coefficients.
+/// Motions by the columns in which they have coefficients, as far as these are known here.
 pub struct ByColumn {
+    /// Where the entries of each column begin, and the end.
     start: Vec<usize>,
+    /// (motion, coefficient).
     entries: Vec<(u32, f64)>,
 }
 
 impl ByColumn {
-    /// Sorts the coefficients of motions with `r` columns.
-    pub fn new<'a>(r: usize, motions: impl Iterator<Item = &'a Motion>) -> ByColumn {
+    /// Sorts the coefficients of motions.
+    pub fn new<'a>(known: &Known, motions: impl Iterator<Item = &'a Motion>) -> ByColumn {
         let mut all: Vec<(u32, u32, f64)> = Vec::new();
-        for (m, motion) in motions.enumerate() {
-            all.extend(motion.0.iter().map(|&(c, v)| (c, m as u32, v)));
+        for (m, motion) in (0..).zip(motions) {
+            let here = motion.0.iter();
+            all.extend(here.filter_map(|&(c, v)| known.here(c).map(|c| (c, m, v))));
         }
         all.sort_by_key(|e| (e.0, e.1));
-        let mut start = vec![0; r + 1];
+        let mut start = vec![0; known.n() + 1];
         all.iter().for_each(|e| start[e.0 as usize + 1] += 1);
-        for c in 0..r {
+        for c in 0..known.n() {
             start[c + 1] += start[c];
         }
         ByColumn {

@@ -58,11 +58,10 @@ impl NaturalCoarse {
 
     /// GᵀG of these rows, factored anew; motions that no pivot shows are left out, too. Collective.
     fn factored(&self, comm: &SimpleCommunicator, shape: &Shape, chosen: &[bool]) -> Gram {
-        let way = (&shape.pattern, shape.team().map(|t| &**t));
         let mut hidden: Vec<u32> = Vec::new();
         loop {
             let mut numbers = self.numbers.borrow_mut();
-            let product = numbers.renewed(comm, way, &self.all, chosen);
+            let product = numbers.renewed(comm, shape, &self.all, chosen);
             let gram = clock::timed(Phase::NaturalFactor, || {
                 Gram::without(shape, product, &hidden)
             });
@@ -80,7 +79,7 @@ impl NaturalCoarse {
     /// The largest work of these rows on one of these motions, relative to the largest that it could be. Collective.
     fn work(&self, comm: &SimpleCommunicator, chosen: &[bool], motions: &[Motion]) -> f64 {
         let largest: Vec<f64> = motions.iter().map(Motion::largest).collect();
-        let by_column = ByColumn::new(self.r, motions.iter());
+        let by_column = ByColumn::new(self.known(), motions.iter());
         let mut most = 0.0f64;
         for i in (0..chosen.len()).filter(|&i| chosen[i]) {
             let (columns, values) = self.all.entries(i);
@@ -92,14 +91,14 @@ impl NaturalCoarse {
         highest(comm, most)
     }
 
-    /// The rows that are chosen now and were not, on every rank. Collective.
+    /// The rows that are chosen now and were not, by the names of columns, on every rank. Collective.
     fn more_rows(&self, comm: &SimpleCommunicator, was: &[bool], is: &[bool]) -> Vec<Row> {
         // [number of entries, columns, values] of each.
         let mut words: Vec<u64> = Vec::new();
         for i in (0..is.len()).filter(|&i| is[i] && !was[i]) {
             let (columns, values) = self.all.entries(i);
             words.push(columns.len() as u64);
-            words.extend(columns.iter().map(|&c| u64::from(c)));
+            words.extend(columns.iter().map(|&c| u64::from(self.known().name(c))));
             words.extend(values.iter().map(|v| v.to_bits()));
         }
         let all = gather_all(comm, &words).concat();

@@ -43,6 +43,14 @@ impl KernelColumns {
         self.start[body]..self.start[body + 1]
     }
 
+    /// The body of a column.
+    pub fn body(&self, column: u32) -> u32 {
+        // Of bodies that start there it is the last one: the others have no columns.
+        self.start
+            .partition_point(|&first| first <= column as usize) as u32
+            - 1
+    }
+
     /// First column of each body, and the end; length n_bodies + 1.
     pub fn start(&self) -> &[usize] {
         &self.start

@@ -8,8 +8,8 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use super::alone::{alone, null_vector};
+use super::known::Known;
 use super::motion::{Motion, NOTHING, NOTHING_SOLVED};
-use super::pattern::Pattern;
 use super::raised::Raised;
 use super::shape::Shape;
 use crate::cholesky::shared::SharedCholesky;
@@ -17,7 +17,6 @@ use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
-use crate::parallel::exchange::sum_all;
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;
@@ -48,7 +47,8 @@ pub(super) enum Factor {
 /// GᵀG, factored; dependent columns are left out. Answers are the same on every rank.
 pub struct Gram {
     pub(super) factor: Factor,
-    /// Columns that are left out, increasing.
+    pub(super) known: Rc<Known>,
+    /// The names of columns that are left out, increasing.
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
@@ -63,16 +63,16 @@ impl Gram {
         Gram::without(shape, a, &[])
     }
 
-    /// The same, without these columns as well, each of which depends on the others though its pivot does not show it.
+    /// The same, without these columns (by their names) as well, each of which depends on the others though its pivot does not show it.
     /// They are many. Collective.
     pub fn without(shape: &Shape, a: Csr, hidden: &[u32]) -> Gram {
         match shape.team() {
-            None => Gram::few(&a),
-            Some(team) => Gram::many(&shape.pattern, team, a, hidden),
+            None => Gram::few(shape, &a),
+            Some(team) => Gram::many(shape, team, a, hidden),
         }
     }
 
-    fn few(a: &Csr) -> Gram {
+    fn few(shape: &Shape, a: &Csr) -> Gram {
         let mut dense = Dense::zeros(a.n(), a.n());
         for i in 0..a.n() {
             let (col, val) = a.row(i);
@@ -90,38 +90,49 @@ impl Gram {
             unheld: dropped.iter().map(vector).collect(),
             dropped: dropped.iter().map(|&k| k as u32).collect(),
             factor: Factor::Dense(factor),
+            known: shape.known.clone(),
             smallest: Cell::new(0.0),
         }
     }
 
-    fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
-        let mut scale = scale_own_rows(team, &mut a);
+    fn many(shape: &Shape, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
+        let known = &shape.known;
+        let mut scale = scale_own_rows(shape, team, &mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
-        let mut alone = alone(pattern, team, &a, &scale);
-        let minus: Vec<Vec<f64>> = hidden.iter().map(|&k| minus_column(team, &a, k)).collect();
-        for &k in alone.iter().map(|m| &m.0).chain(hidden) {
-            leave_out(team, &mut a, k);
+        let mut alone = alone(shape, team, &a, &scale);
+        let minus = hidden.iter().map(|&k| minus_column(known, team, &a, k));
+        let minus: Vec<Vec<f64>> = minus.collect();
+        for k in alone.iter().map(|m| &m.0).chain(hidden) {
+            if let Some(k) = known.here(*k) {
+                leave_out(team, &mut a, k);
+            }
         }
         let (factor, together) = SharedCholesky::semidefinite(&a, team.clone(), DEPENDENT);
         let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
         dropped.extend(together.iter().chain(hidden));
         dropped.sort_unstable();
-        let vectors = factor.null_vectors(&together).into_iter();
-        alone.extend(together.iter().zip(vectors).map(|(&k, v)| {
-            let v = v.iter().map(|(c, v)| (*c, v * scale[*c as usize]));
-            (k, Motion::above(NOTHING_SOLVED, v))
-        }));
+        let vectors = factor.null_vectors(&together, &scale).into_iter();
+        alone.extend(
+            together
+                .iter()
+                .zip(vectors)
+                .map(|(&k, v)| (k, Motion::above(NOTHING_SOLVED, v.iter().copied()))),
+        );
+        let left_out: Vec<u32> = dropped.iter().filter_map(|&k| known.here(k)).collect();
         alone.extend(hidden.iter().zip(minus).map(|(&k, mut v)| {
-            factor.solve(&mut v); /*                            v ← −A_JJ⁻¹ A_Jk, v_k = 1 */
-            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
-            v[k as usize] = 1.0;
-            let v = (0..).zip(v.iter().zip(&scale).map(|(v, s)| v * s));
-            (k, Motion::above(NOTHING_SOLVED, v))
+            solve(&factor, known, &mut v); /*                   v ← −A_JJ⁻¹ A_Jk, v_k = 1 */
+            left_out.iter().for_each(|&k| v[k as usize] = 0.0);
+            if let Some(k) = known.here(k) {
+                v[k as usize] = 1.0;
+            }
+            v.iter_mut().zip(&scale).for_each(|(v, s)| *v *= s);
+            (k, known.motion(team.comm(), &v, NOTHING_SOLVED))
         }));
         alone.sort_by_key(|m| m.0);
-        dropped.iter().for_each(|&k| scale[k as usize] = 0.0);
+        left_out.iter().for_each(|&k| scale[k as usize] = 0.0);
         Gram {
             factor: Factor::Sparse { factor, scale },
+            known: known.clone(),
             dropped,
             unheld: alone.into_iter().map(|m| m.1).collect(),
             smallest: Cell::new(0.0),
@@ -133,27 +144,29 @@ impl Gram {
     /// few, or dependent beyond that after rounding. Collective.
     pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
         let team = shape.team()?;
-        let mut scale = scale_own_rows(team, &mut a);
-        for &k in &plain.dropped {
+        let mut scale = scale_own_rows(shape, team, &mut a);
+        for k in plain.dropped.iter().filter_map(|&k| shape.known.here(k)) {
             leave_out(team, &mut a, k);
             scale[k as usize] = 0.0;
         }
         let (factor, more) = SharedCholesky::semidefinite(&a, team.clone(), WEIGHTED);
         more.is_empty().then(|| Gram {
             factor: Factor::Sparse { factor, scale },
+            known: shape.known.clone(),
             dropped: plain.dropped.clone(),
             unheld: Vec::new(),
             smallest: Cell::new(0.0),
         })
     }
 
-    /// x ← A⁺ x, zero in the columns that are left out. Collective.
+    /// x ← A⁺ x for a vector of columns that is the same wherever they are known, zero in those that are left out.
+    /// Collective.
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
             Factor::Dense(factor) => factor.solve(x),
             Factor::Sparse { factor, scale } => {
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
-                factor.solve(x);
+                solve(factor, &self.known, x);
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
             }
             Factor::Raised(raised) => raised.solve(x),
@@ -180,12 +193,13 @@ impl Gram {
     }
 
     /// Number of columns, r.
-    pub fn n(&self) -> usize {
-        match &self.factor {
-            Factor::Dense(factor) => factor.n(),
-            Factor::Sparse { scale, .. } => scale.len(),
-            Factor::Raised(raised) => raised.base().n(),
-        }
+    pub fn r(&self) -> usize {
+        self.known.r()
+    }
+
+    /// The columns that this rank knows.
+    pub fn known(&self) -> &Rc<Known> {
+        &self.known
     }
 
     /// About the smallest eigenvalue of the matrix, scaled to a unit diagonal. Zero where it is tiny, or not known
@@ -203,16 +217,31 @@ impl Gram {
     }
 }
 
-/// Column `k` of −A, without its diagonal entry. A rank has its own rows. Collective.
-fn minus_column(team: &Team, a: &Csr, k: u32) -> Vec<f64> {
+/// x ← A⁺ x for the scaled matrix of this factor. Collective.
+fn solve(factor: &SharedCholesky, known: &Known, x: &mut [f64]) {
+    if !known.is_part() {
+        return factor.solve(x);
+    }
+    let team = factor.team();
+    let (n_own, n_ghosts) = team.sizes();
+    let mut shares: Vec<f64> = team.own_dofs().map(|c| x[c as usize]).collect();
+    shares.resize(n_own + n_ghosts, 0.0);
+    factor.solve_shares(&mut shares);
+    let own = team.own_dofs().zip(&shares);
+    own.for_each(|(c, v)| x[c as usize] = *v);
+    known.tell(team.comm(), x);
+}
+
+/// The column of −A with this name, without its diagonal entry. A rank has its own rows. Collective.
+fn minus_column(known: &Known, team: &Team, a: &Csr, name: u32) -> Vec<f64> {
     let mut out = vec![0.0; a.n()];
-    if team.has(k) {
+    if let Some(k) = known.here(name).filter(|&k| team.has(k)) {
         let (col, val) = a.row(k as usize);
         for (&j, &v) in col.iter().zip(val).filter(|e| *e.0 != k) {
             out[j as usize] = -v;
         }
     }
-    sum_all(team.comm(), &mut out);
+    known.sum(team.comm(), &mut out);
     out
 }
 
@@ -224,19 +253,19 @@ fn leave_out(team: &Team, a: &mut Csr, column: u32) {
 }
 
 /// The diagonal of a matrix of which each rank has its rows. Collective.
-pub(super) fn diagonal_of_own_rows(team: &Team, a: &Csr) -> Vec<f64> {
+pub(super) fn diagonal_of_own_rows(known: &Known, team: &Team, a: &Csr) -> Vec<f64> {
     let mut diagonal = vec![0.0; a.n()];
     for dof in team.own_dofs() {
         diagonal[dof as usize] = a.get(dof as usize, dof as usize);
     }
-    sum_all(team.comm(), &mut diagonal);
+    known.sum(team.comm(), &mut diagonal);
     diagonal
 }
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A, in the rows that this rank has; returns 1/D, one where the diagonal
 /// vanishes. Collective.
-fn scale_own_rows(team: &Team, a: &mut Csr) -> Vec<f64> {
-    let diagonal = diagonal_of_own_rows(team, a);
+fn scale_own_rows(shape: &Shape, team: &Team, a: &mut Csr) -> Vec<f64> {
+    let diagonal = diagonal_of_own_rows(&shape.known, team, a);
     scale(a, &diagonal, team.own_dofs().map(|dof| dof as usize))
 }
 

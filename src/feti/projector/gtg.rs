@@ -12,6 +12,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::distributed::{Distributed, Work};
 use super::gram::{scale_to_unit_diagonal, Gram, REGULAR};
+use super::known::Known;
 use super::refined::{probe, Refined};
 use super::rows::Rows;
 use super::shape::Shape;
@@ -19,7 +20,6 @@ use super::spread::Spread;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::sum_all;
 use crate::petsc::{Comm, Ksp, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
 
@@ -103,12 +103,12 @@ impl Gtg {
             }
             _ => petsc(shape.product(comm, g, qg, |_| true))?,
         };
-        let r = gram.n();
+        let n = gram.known().n();
         Ok(Gtg {
             solver,
             gram,
             spread: None,
-            scratch: RefCell::new(vec![0.0; r]),
+            scratch: RefCell::new(vec![0.0; n]),
         })
     }
 
@@ -178,8 +178,8 @@ impl Gtg {
         }
     }
 
-    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank. Collective.
-    pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x for a vector of columns that is the same wherever they are known. Collective.
+    pub fn solve(&self, comm: &SimpleCommunicator, x: &mut [f64], side: Side) -> Result<()> {
         match &self.solver {
             Solver::Own => {
                 self.gram.solve(x);
@@ -189,14 +189,23 @@ impl Gtg {
                 factor.solve(x, side);
                 Ok(())
             }
-            Solver::Petsc(scaled) => scaled.solve(x, side),
+            Solver::Petsc(scaled) => {
+                let mut whole = self.known().whole(comm, x);
+                scaled.solve(&mut whole, side)?;
+                x.copy_from_slice(&self.known().part_of(&whole));
+                Ok(())
+            }
             Solver::Chosen(chosen) => chosen.solve(x, side),
         }
     }
 
+    fn known(&self) -> &Known {
+        self.gram.known()
+    }
+
     /// c ← (Gᵀ Q G)⁻¹ (b + Σ c) (or with the transposed inverse), the sum over the ranks. A rank has the solution in
-    /// the columns of its own rows and bodies; other entries are not to be read. `b` is the same on every rank.
-    /// Collective.
+    /// the columns of its own rows and bodies; other entries are not to be read. `b` is the same wherever columns are
+    /// known. Collective.
     pub fn solve_sum(
         &self,
         comm: &SimpleCommunicator,
@@ -207,11 +216,11 @@ impl Gtg {
         if let (Some(factor), Some(spread)) = (self.shared(), &self.spread) {
             return spread.solve(factor, c, b);
         }
-        sum_all(comm, c);
+        self.known().sum(comm, c);
         if let Some(b) = b {
             c.iter_mut().zip(b).for_each(|(c, b)| *c += b);
         }
-        self.solve(c, side)
+        self.solve(comm, c, side)
     }
 
     /// x ← x − along (Gᵀ Q G)⁻¹ fromᵀ x (or with the transposed inverse). Collective.
@@ -232,8 +241,8 @@ impl Gtg {
         }
         c.fill(0.0);
         from.add_transpose(&x.array()?, &mut c);
-        clock::timed(Phase::Reduction, || sum_all(comm, &mut c));
-        clock::timed(Phase::Natural, || self.solve(&mut c, side))?;
+        clock::timed(Phase::Reduction, || self.known().sum(comm, &mut c));
+        clock::timed(Phase::Natural, || self.solve(comm, &mut c, side))?;
         along.add(-1.0, &c, &mut x.array_mut()?);
         Ok(())
     }

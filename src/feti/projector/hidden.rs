@@ -18,8 +18,8 @@ const STEPS: usize = 3;
 const ROUNDING: f64 = 1e-13;
 
 impl Gram {
-    /// The motion on which a sparse factor of all columns that it keeps is weakest, and its column that is best left
-    /// out; `None` if the factor is regular. Collective.
+    /// The motion on which a sparse factor of all columns that it keeps is weakest, and the name of its column that is
+    /// best left out; `None` if the factor is regular. Collective.
     pub fn weakest(&self) -> Option<(u32, Motion)> {
         let Factor::Sparse { factor, scale } = &self.factor else {
             return None;
@@ -28,7 +28,9 @@ impl Gram {
         let comm = team.comm();
         let n_own = team.sizes().0;
         let kept = |c: u32| f64::from(u8::from(scale[c as usize] > 0.0));
-        let mut shares: Vec<f64> = team.dofs().map(|c| kept(c) * probe(c as usize)).collect();
+        let known = &self.known;
+        let start = |c: u32| kept(c) * probe(known.name(c) as usize);
+        let mut shares: Vec<f64> = team.dofs().map(start).collect();
         let norm = |own: &[f64]| {
             let mut sum = [own.iter().map(|v| v * v).sum::<f64>()];
             sum_all(comm, &mut sum);
@@ -53,15 +55,15 @@ impl Gram {
         if least > ROUNDING {
             return None;
         }
-        let mut x = vec![0.0; self.n()];
+        let mut x = vec![0.0; known.n()];
         team.own_dofs()
             .zip(&shares)
             .for_each(|(c, v)| x[c as usize] = *v);
-        sum_all(comm, &mut x);
-        let column =
-            (0..self.n()).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs()).then(j.cmp(&i)))?;
-        let entries = (0..).zip(x.iter().zip(scale).map(|(x, s)| x * s));
-        Some((column as u32, Motion::above(NOTHING_SOLVED, entries)))
+        known.sum(comm, &mut x);
+        // The largest entry, and of equal ones the first.
+        let column = known.motion(comm, &x, 0.0).first_largest()?;
+        x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
+        Some((column, known.motion(comm, &x, NOTHING_SOLVED)))
     }
 }
 

@@ -32,6 +32,15 @@ impl Motion {
         self.0.iter().fold(0.0, |a, e| a.max(e.1.abs()))
     }
 
+    /// The first column with the largest coefficient.
+    pub(super) fn first_largest(&self) -> Option<u32> {
+        let order = |a: &&(u32, f64), b: &&(u32, f64)| {
+            let sizes = a.1.abs().total_cmp(&b.1.abs());
+            sizes.then(b.0.cmp(&a.0))
+        };
+        self.0.iter().max_by(order).map(|e| e.0)
+    }
+
     /// Σ of the squares of the coefficients.
     pub fn square(&self) -> f64 {
         self.0.iter().map(|e| e.1 * e.1).sum()

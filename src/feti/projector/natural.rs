@@ -19,9 +19,10 @@ use super::distributed::Distributed;
 use super::gram::Gram;
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
+use super::known::Known;
 use super::numbers::Numbers;
 use super::pattern::meeting;
-use super::rows::{RowEntry, Rows};
+use super::rows::Rows;
 use super::shape::{Shape, Sharing};
 use super::spread::Spread;
 use super::weights::{choose, spread};
@@ -30,14 +31,10 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{any, exchange, max_all};
-use crate::parallel::owners::Owners;
-use crate::petsc::{Session, Vec as PetscVec};
-use crate::substructures::Substructures;
+use crate::parallel::exchange::any;
+use crate::petsc::{Options, Session, Vec as PetscVec};
+use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
-
-/// Entries of R below this part of their column's largest are rounding, and entries of G below this part of their row.
-const STILL: f64 = 1e-12;
 
 /// Largest relative error that a vector may have, with Q = M⁻¹, after multiplication with Gᵀ Q G and its inverse. Where
 /// stiff channels join bodies that only soft contact holds, Gᵀ M⁻¹ G is nearly singular and P is no longer a
@@ -58,6 +55,8 @@ pub struct NaturalCoarse {
     pub kernels: Vec<Dense>,
     /// Which columns of R each body has.
     pub columns: KernelColumns,
+    /// The columns that this rank knows. Those of the fields below are numbers.
+    known: Rc<Known>,
     /// First column of R of each local subdomain's body.
     first_column: Vec<usize>,
     /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
@@ -115,15 +114,13 @@ impl NaturalCoarse {
         let kernels: Vec<Dense> = (stiffness.locals.iter().enumerate())
             .map(|(j, local)| space.kernel_on_interface(j, local))
             .collect();
-        let first_column: Vec<usize> = (problem.local.iter())
-            .map(|s| columns.of(s.body).start)
-            .collect();
         let mut natural = NaturalCoarse {
             r,
             columns,
             projector: ProjectorKind::Identity,
             kernels,
-            first_column,
+            known: Known::all(r).into(),
+            first_column: vec![0; problem.local.len()],
             all: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             shape: None,
             wide: OnceCell::new(),
@@ -140,17 +137,34 @@ impl NaturalCoarse {
             prefix: prefix.into(),
         };
         if r > 0 {
-            natural.all = natural.all_rows(stiffness);
+            natural.all = natural.all_rows(problem, stiffness);
+            natural.spread = spread(comm, problem, stiffness);
+            natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             let start = natural.columns.start();
             let lists = meeting(comm, &natural.all, &natural.all, start);
             let order = || {
                 let blocks = Blocks::of_rows(comm, &natural.all, start);
                 (blocks, positions(comm, problem))
             };
-            let sharing = natural.sharing();
-            natural.shape = Some(Shape::ordered(comm, &lists, start, order, &sharing));
-            natural.spread = spread(comm, problem, stiffness);
-            natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
+            // With Q = M⁻¹ rows reach far, and the solver of the user's choice has its own columns on each rank.
+            let chosen = Options::new(&stiffness.session, prefix).any_but("redundancy")?;
+            let all = chosen || natural.projector == ProjectorKind::Preconditioner;
+            let names = |body: usize| {
+                let columns = natural.columns.of(body);
+                columns.start as u32..columns.end as u32
+            };
+            let of_bodies = problem.local.iter().flat_map(|sub| names(sub.body));
+            let sharing = Sharing {
+                known: (!all).then(|| distinct(of_bodies)),
+                ..natural.sharing()
+            };
+            let shape = Shape::ordered(comm, &lists, start, order, &sharing);
+            drop(sharing);
+            natural.known = shape.known.clone();
+            natural.all = natural.all.numbered(&shape.known);
+            let first = |sub: &Subdomain| natural.known.numbers(names(sub.body)).start;
+            natural.first_column = problem.local.iter().map(first).collect();
+            natural.shape = Some(shape);
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.mended {
@@ -284,21 +298,19 @@ impl NaturalCoarse {
             copies: self.copies,
             home: self.columns.home(),
             rows: Some(&self.all),
+            known: None,
         }
+    }
+
+    /// The columns that this rank knows.
+    pub fn known(&self) -> &Rc<Known> {
+        &self.known
     }
 
     /// The graph of the bodies. Collective when it is first asked for.
     pub(crate) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
         self.graph
             .get_or_init(|| BodyGraph::new(problem, stiffness))
-    }
-
-    /// The body of each kernel vector.
-    ///
-    /// # Panics
-    /// If no body floats.
-    pub fn bodies(&self) -> &[u32] {
-        self.shape.as_ref().expect("a body floats").pattern.bodies()
     }
 
     /// G = Z B R for the rows that hold.
@@ -313,61 +325,19 @@ impl NaturalCoarse {
         g
     }
 
-    /// Assembles [`all`](Self::all). Collective.
-    fn all_rows(&self, stiffness: &Stiffness) -> Rows {
-        let (comm, jump) = (stiffness.comm(), &stiffness.jump);
-        let owners = Owners::new(comm, jump.first);
-        let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
-        let largest = self.largest(comm);
-        for (j, kernel) in self.kernels.iter().enumerate() {
-            let columns = jump.columns.of(j);
-            for &(e, full) in columns.contact {
-                let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
-                let row = jump.ghosts[ghost as usize];
-                let to = owners.of(row);
-                for c in 0..kernel.cols {
-                    let col = self.first_column[j] + c;
-                    let value = kernel.get(at as usize, c);
-                    // A body that cannot move along a row's normal moves there by rounding, and the row would seem to
-                    // hold it.
-                    if value.abs() > STILL * largest[col] {
-                        outgoing[to].push(RowEntry {
-                            row,
-                            col: col as u32,
-                            value: full * value,
-                        });
-                    }
-                }
-            }
-        }
-        let entries = exchange(comm, outgoing);
-        let first = jump.first as u32;
-        let entries = entries.iter().map(|e| (e.row - first, e.col, e.value));
-        Rows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
+    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of all kernel vectors, the same on every rank. Collective.
+    pub fn solve_gtg(&self, comm: &SimpleCommunicator, x: &mut [f64]) -> Result<()> {
+        let Some(gtg) = &self.gtg else {
+            return Ok(());
+        };
+        let mut known = self.known.part_of(x);
+        gtg.solve(comm, &mut known, Side::Plain)?;
+        x.copy_from_slice(&self.known.whole(comm, &known));
+        Ok(())
     }
 
-    /// The largest entry of each column of R. Collective.
-    fn largest(&self, comm: &SimpleCommunicator) -> Vec<f64> {
-        let mut largest = vec![0.0_f64; self.r];
-        for (kernel, first) in self.kernels.iter().zip(&self.first_column) {
-            for c in 0..kernel.cols {
-                let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
-                largest[first + c] = largest[first + c].max(size);
-            }
-        }
-        max_all(comm, &mut largest);
-        largest
-    }
-
-    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank. Collective.
-    pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
-        self.gtg
-            .as_ref()
-            .map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
-    }
-
-    /// First column of R of local subdomain `j`'s body.
-    pub(super) fn first_column(&self, j: usize) -> usize {
+    /// First column of R of local subdomain `j`'s body, as it is numbered here.
+    pub(crate) fn first_column(&self, j: usize) -> usize {
         self.first_column[j]
     }
 

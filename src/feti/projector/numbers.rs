@@ -9,6 +9,7 @@ use mpi::topology::SimpleCommunicator;
 use super::pattern::Pattern;
 use super::products::{Outgoing, Sent};
 use super::rows::Rows;
+use super::shape::Shape;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
@@ -29,15 +30,16 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// GᵀG over the chosen rows, which has this pattern. With a team that all ranks share, a rank gets the rows that it
+    /// GᵀG over the chosen rows, which has this shape. With a team that all ranks share, a rank gets the rows that it
     /// has in the factor, else it gets all. Collective.
     pub fn renewed(
         &mut self,
         comm: &SimpleCommunicator,
-        (pattern, team): (&Pattern, Option<&Team>),
+        shape: &Shape,
         rows: &Rows,
         chosen: &[bool],
     ) -> Csr {
+        let (pattern, team) = (&shape.pattern, shape.team().map(|team| &**team));
         let mut out = clock::timed(Phase::NaturalOrder, || pattern.zeros());
         if self.share.is_empty() {
             self.chosen = vec![false; rows.n()];
@@ -64,7 +66,7 @@ impl Numbers {
         pattern.add_product(&mut self.share, (rows, rows), |i| chosen[i], on);
         match (team, before) {
             (Some(team), Some(before)) => {
-                self.exchange(pattern, team, &before);
+                self.exchange(shape, team, &before);
                 self.sum_of_own(pattern, team, &touched);
                 out.val.copy_from_slice(&self.sum);
             }
@@ -85,8 +87,9 @@ impl Numbers {
     }
 
     /// Sends the entries that differ from what they were, and notes what others send.
-    fn exchange(&mut self, pattern: &Pattern, team: &Team, before: &[(u32, usize, f64)]) {
-        let mut outgoing = Outgoing::new(team);
+    fn exchange(&mut self, shape: &Shape, team: &Team, before: &[(u32, usize, f64)]) {
+        let pattern = &shape.pattern;
+        let mut outgoing = Outgoing::new(team, &shape.known);
         for &(row, k, old) in before {
             if self.share[k] != old {
                 outgoing.add(row, pattern.column(k), self.share[k]);

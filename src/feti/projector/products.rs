@@ -4,6 +4,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::known::Known;
 use super::pattern::Pattern;
 use super::rows::Rows;
 use super::shape::Shape;
@@ -14,6 +15,7 @@ use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
 /// Entries on their way to the ranks that have their rows.
 pub struct Outgoing<'a> {
     team: &'a Team,
+    known: &'a Known,
     words: Vec<Vec<u64>>,
 }
 
@@ -30,26 +32,28 @@ pub struct Sent {
 
 impl<'a> Outgoing<'a> {
     /// Nothing yet.
-    pub fn new(team: &'a Team) -> Outgoing<'a> {
+    pub fn new(team: &'a Team, known: &'a Known) -> Outgoing<'a> {
         let words = vec![Vec::new(); team.comm().size() as usize];
-        Outgoing { team, words }
+        Outgoing { team, known, words }
     }
 
     /// Adds an entry.
     pub fn add(&mut self, row: u32, column: u32, value: f64) {
         let to = self.team.place(row).rank as usize;
-        self.words[to].extend([u64::from(row) << 32 | u64::from(column), value.to_bits()]);
+        let [row, column] = [row, column].map(|c| u64::from(self.known.name(c)));
+        self.words[to].extend([row << 32 | column, value.to_bits()]);
     }
 
     /// Sends them; returns what others have sent to this rank, by increasing rank. Collective.
     pub fn send(self, pattern: &Pattern) -> Vec<Sent> {
         let mut sent = Vec::new();
+        let number = |name: u64| self.known.number(name as u32);
         for (rank, words) in exchange_words(self.team.comm(), self.words)
             .iter()
             .enumerate()
         {
             sent.extend(words.chunks_exact(2).map(|pair| Sent {
-                entry: pattern.entry((pair[0] >> 32) as u32, pair[0] as u32),
+                entry: pattern.entry(number(pair[0] >> 32), number(pair[0] & 0xffff_ffff)),
                 rank,
                 value: f64::from_bits(pair[1]),
             }));
@@ -79,7 +83,7 @@ impl Shape {
             sum_all(comm, &mut product.val);
             return product;
         };
-        let mut outgoing = Outgoing::new(team);
+        let mut outgoing = Outgoing::new(team, &self.known);
         for (row, span) in self.pattern.entries().filter(|(row, _)| !team.has(*row)) {
             for k in span.filter(|&k| product.val[k] != 0.0) {
                 outgoing.add(row, product.col[k], product.val[k]);
@@ -100,7 +104,7 @@ impl Shape {
         };
         let mut product = self.pattern.product_here(a, b, |_| true);
         let mut transpose = self.pattern.zeros();
-        let mut outgoing = [Outgoing::new(team), Outgoing::new(team)];
+        let mut outgoing = [(); 2].map(|()| Outgoing::new(team, &self.known));
         for (row, span) in self.pattern.entries() {
             let own = team.has(row);
             for k in span.filter(|&k| product.val[k] != 0.0) {
@@ -122,7 +126,7 @@ impl Shape {
         [product, transpose]
     }
 
-    /// All rows of a matrix of which this rank has some. Collective.
+    /// All rows of a matrix of which this rank has some, with the names of columns. Collective.
     pub fn gathered(&self, comm: &SimpleCommunicator, a: Csr) -> Csr {
         let Some(team) = self.shared(comm) else {
             return a;
@@ -131,7 +135,8 @@ impl Shape {
         for row in team.own_dofs() {
             let (col, val) = a.row(row as usize);
             for (&column, value) in col.iter().zip(val) {
-                words.extend([u64::from(row) << 32 | u64::from(column), value.to_bits()]);
+                let [row, column] = [row, column].map(|c| u64::from(self.known.name(c)));
+                words.extend([row << 32 | column, value.to_bits()]);
             }
         }
         let all = gather_all(comm, &words).concat();
@@ -143,7 +148,7 @@ impl Shape {
             )
         };
         let triplets: Vec<(u32, u32, f64)> = all.chunks_exact(2).map(entry).collect();
-        Csr::from_triplets(a.n(), &triplets)
+        Csr::from_triplets(self.known.r(), &triplets)
     }
 }
 

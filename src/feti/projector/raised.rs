@@ -15,6 +15,7 @@ use std::rc::Rc;
 use faer::prelude::Solve;
 
 use super::gram::{Factor, Gram};
+use super::known::Known;
 use super::motion::Motion;
 use crate::cholesky::team::Team;
 use crate::linalg::dense::Dense;
@@ -31,7 +32,7 @@ const FREE: usize = 1000;
 /// rows knows better what nearly hangs together.
 const PIVOT: f64 = 1e-4;
 
-/// A row of G: columns and values.
+/// A row of G: names of columns, and values.
 pub type Row = (Vec<u32>, Vec<f64>);
 
 /// (A + C Cᵀ)⁺.
@@ -55,9 +56,9 @@ struct Shared {
 }
 
 impl Shared {
-    fn new(team: &Team, motion: &Motion) -> Shared {
+    fn new(team: &Team, known: &Known, motion: &Motion) -> Shared {
         let here = motion.0.iter();
-        let here = here.filter_map(|&(c, v)| team.here(c).map(|at| (at, v)));
+        let here = here.filter_map(|&(c, v)| Some((team.here(known.here(c)?)?, v)));
         let is_own = |e: &(u32, f64)| (e.0 as usize) < team.sizes().0;
         let (own, ghosts) = here.partition(is_own);
         Shared { own, ghosts }
@@ -119,7 +120,8 @@ impl Gram {
             .map(|&m| self.unheld[m].clone())
             .collect();
         let team = factor.team();
-        let shares = |all: &[Motion]| all.iter().map(|m| Shared::new(team, m)).collect();
+        let known = &*self.known;
+        let shares = |all: &[Motion]| all.iter().map(|m| Shared::new(team, known, m)).collect();
         let shared = [shares(&rows), shares(&motions)];
         // A motion of its own column alone: that column is the one that is left out for it.
         let stay = |m: &usize| !taken.of_rows.contains(m);
@@ -127,6 +129,7 @@ impl Gram {
         Some(Gram {
             dropped: left.iter().map(|&m| self.dropped[m]).collect(),
             unheld: taken.left,
+            known: self.known.clone(),
             smallest: Cell::new(0.0),
             factor: Factor::Raised(Box::new(Raised {
                 base: self.clone(),
@@ -212,11 +215,6 @@ impl Gram {
 }
 
 impl Raised {
-    /// The factor of A.
-    pub fn base(&self) -> &Gram {
-        &self.base
-    }
-
     /// About the smallest eigenvalue: a row does the square of its part of the work on its motion.
     pub fn smallest_eigenvalue(&self) -> f64 {
         self.pivot.powi(2).min(self.base.smallest_eigenvalue())
@@ -237,24 +235,38 @@ impl Raised {
         z
     }
 
-    /// x ← (A + C Cᵀ)⁺ x. Collective.
+    /// x ← (A + C Cᵀ)⁺ x for a vector of columns. Collective.
     pub fn solve(&self, x: &mut [f64]) {
-        let dots =
-            |all: &[Motion], x: &[f64]| -> Vec<f64> { all.iter().map(|m| m.dot(x)).collect() };
+        let (known, comm) = (&*self.base.known, self.team().comm());
+        let dots = |all: &[Motion], x: &[f64]| -> Vec<f64> {
+            if !known.is_part() {
+                return all.iter().map(|m| m.dot(x)).collect();
+            }
+            let (names, [x]) = known.at(comm, all, [x]);
+            let at = |c: u32| x[names.binary_search(&c).expect("a column of the motions")];
+            let terms = |m: &Motion| m.0.iter().map(|&(c, v)| v * at(c)).sum();
+            all.iter().map(terms).collect()
+        };
         let w = self.forces(&dots(&self.motions, x));
-        self.rows.iter().zip(&w).for_each(|(c, w)| c.add(-w, x));
+        let rows = self.rows.iter().zip(&w);
+        rows.for_each(|(c, w)| known.add(-w, c, x));
         self.base.solve(x);
         let z = self.amounts(&w, &dots(&self.rows, x));
-        self.motions.iter().zip(&z).for_each(|(n, z)| n.add(*z, x));
+        let motions = self.motions.iter().zip(&z);
+        motions.for_each(|(n, z)| known.add(*z, n, x));
+    }
+
+    fn team(&self) -> &Team {
+        let Factor::Sparse { factor, .. } = &self.base.factor else {
+            unreachable!("it was made from such a factor")
+        };
+        factor.team()
     }
 
     /// The same for a vector that no rank has whole ([`Gram::solve_shares`]). Collective.
     pub fn solve_shares(&self, x: &mut [f64]) {
         let [rows, motions] = &self.shared;
-        let Factor::Sparse { factor, .. } = &self.base.factor else {
-            unreachable!("it was made from such a factor")
-        };
-        let comm = factor.team().comm();
+        let comm = self.team().comm();
         let summed = |values: &mut Vec<f64>| {
             clock::timed(Phase::Reduction, || sum_all(comm, values));
         };

@@ -8,10 +8,10 @@ use std::rc::Rc;
 
 use super::gram::{diagonal_of_own_rows, Gram};
 use super::gtg::Side;
+use super::known::Known;
 use super::shape::Shape;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
-use crate::parallel::exchange::sum_all;
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU
 /// factorisation.
@@ -30,6 +30,7 @@ pub struct Refined {
     factor: Gram,
     /// The ranks that share them; `None` if this rank has all.
     team: Option<Rc<Team>>,
+    known: Rc<Known>,
     matrix: Csr,
     /// Aᵀ, if A is not symmetric and steps are needed.
     transpose: Option<Csr>,
@@ -65,6 +66,7 @@ impl Refined {
         let mut refined = Refined {
             factor,
             team: shape.team().cloned(),
+            known: shape.known.clone(),
             matrix,
             transpose,
             steps: 0,
@@ -76,27 +78,32 @@ impl Refined {
 
     /// Number of columns that are not left out.
     pub fn rank(&self) -> usize {
-        self.factor.n() - self.factor.dropped.len()
+        self.factor.r() - self.factor.dropped.len()
     }
 
     /// Finds out how many steps are needed. Returns whether so many do.
     fn enough(&mut self) -> bool {
         let diagonal = match &self.team {
-            Some(team) => diagonal_of_own_rows(team, &self.matrix),
+            Some(team) => diagonal_of_own_rows(&self.known, team, &self.matrix),
             None => self.matrix.diagonal(),
         };
         let root: Vec<f64> = diagonal.iter().map(|d| d.sqrt()).collect();
         let mut x: Vec<f64> = (0..root.len())
-            .map(probe)
+            .map(|c| probe(self.known.name(c as u32) as usize))
             .zip(&root)
             .map(|(x, d)| if *d > 0.0 { x / d } else { 0.0 })
             .collect();
         self.without_dropped(&mut x);
         let mut b = self.product(&self.matrix, &x);
         self.without_dropped(&mut b);
+        let (team, known) = (self.team.clone(), self.known.clone());
         let scaled = |v: &[f64], power: i32| {
             let entries = v.iter().zip(&root).filter(|e| *e.1 > 0.0);
-            entries.fold(0.0f64, |m, (v, d)| m.max((v * d.powi(power)).abs()))
+            let most = entries.fold(0.0f64, |m, (v, d)| m.max((v * d.powi(power)).abs()));
+            match &team {
+                Some(team) => known.most(team.comm(), most),
+                None => most,
+            }
         };
         for steps in 0..=STEPS {
             self.steps = steps;
@@ -123,7 +130,8 @@ impl Refined {
 
     fn without_dropped(&self, x: &mut [f64]) {
         let dropped = self.factor.dropped.iter();
-        dropped.for_each(|&k| x[k as usize] = 0.0);
+        let dropped = dropped.filter_map(|&k| self.known.here(k));
+        dropped.for_each(|k| x[k as usize] = 0.0);
     }
 
     /// A x. Collective.
@@ -136,7 +144,7 @@ impl Refined {
                     let products = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]);
                     y[row as usize] = products.sum();
                 }
-                sum_all(team.comm(), &mut y);
+                self.known.sum(team.comm(), &mut y);
             }
             None => a.mul(x, &mut y),
         }

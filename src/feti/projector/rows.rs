@@ -5,6 +5,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
+use super::known::Known;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{sum_all, Record};
@@ -37,7 +38,8 @@ impl Record for RowEntry {
     }
 }
 
-/// Rows of a matrix with r columns, on the rank that owns them.
+/// Rows of a matrix with r columns, on the rank that owns them. Columns have their names or their numbers
+/// ([`known`](super::known)).
 ///
 /// Rows with the same columns, such as those of a face between two bodies, are a group. Products go through them group
 /// by group: a group reads its columns once, and a row takes the memory of its values and hardly more.
@@ -153,6 +155,31 @@ impl Rows {
         Rows {
             layout: layout.into(),
             values,
+        }
+    }
+
+    /// The same with the numbers that columns have here in the place of their names.
+    pub fn numbered(&self, known: &Known) -> Rows {
+        self.renamed(|name| known.number(name))
+    }
+
+    /// The same with the names of columns in the place of their numbers.
+    pub fn named(&self, known: &Known) -> Rows {
+        self.renamed(|column| known.name(column))
+    }
+
+    /// The same with other numbers for the columns, in the same order.
+    fn renamed(&self, name: impl Fn(u32) -> u32) -> Rows {
+        let old = &*self.layout;
+        let layout = Layout {
+            row: old.row.clone(),
+            groups: old.groups.clone(),
+            columns: old.columns.iter().map(|&c| name(c)).collect(),
+            order: old.order.clone(),
+        };
+        Rows {
+            layout: layout.into(),
+            values: self.values.clone(),
         }
     }
 

@@ -7,6 +7,7 @@ use mpi::traits::Communicator;
 
 use super::blocks::Blocks;
 use super::gram::FEW;
+use super::known::Known;
 use super::pattern::Pattern;
 use super::rows::Rows;
 use crate::cholesky::dissection::{part_of_dissection, Vertices};
@@ -21,6 +22,8 @@ use crate::parallel::exchange::gather_all;
 pub struct Shape {
     /// The entries for all candidate rows, in the rows that this rank has in the factor and in those that it adds to.
     pub pattern: Pattern,
+    /// The columns that this rank knows: those of pattern and team.
+    pub known: Rc<Known>,
     /// The order and the ranks that share the factor, if there are many columns.
     team: Option<Rc<Team>>,
 }
@@ -33,6 +36,8 @@ pub struct Sharing<'a> {
     pub home: &'a [u32],
     /// What this rank adds to products comes from these rows; `None`: from anywhere.
     pub rows: Option<&'a Rows>,
+    /// Columns that this rank has to know besides those of rows and fronts; `None`: it knows all.
+    pub known: Option<Vec<u32>>,
 }
 
 impl Sharing<'_> {
@@ -42,6 +47,7 @@ impl Sharing<'_> {
             copies: 1,
             home: &[],
             rows: None,
+            known: None,
         }
     }
 }
@@ -71,24 +77,68 @@ impl Shape {
         let r = *start.last().expect("there is an end");
         let team = || {
             let (blocks, at) = order();
-            team(comm, lists, (&blocks, at), sharing).into()
+            team(comm, lists, (&blocks, at), sharing)
         };
-        let team: Option<Rc<Team>> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, team));
-        let pattern = match (&team, sharing.rows) {
-            (Some(team), Some(rows)) if team.is_whole(comm) => {
-                let columns = distinct(rows.columns().iter().copied());
-                // What a rank adds to, and what it has.
-                let here = |body: usize| {
-                    let columns_of = start[body] as u32..start[body + 1] as u32;
-                    let first = columns.partition_point(|&c| c < columns_of.start);
-                    let touched = columns.get(first).is_some_and(|c| columns_of.contains(c));
-                    touched || columns_of.into_iter().any(|c| team.has(c))
-                };
-                Pattern::new(lists, start, here)
-            }
-            _ => Pattern::new(lists, start, |_| true),
+        let team: Option<Team> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, team));
+        let whole = team.as_ref().filter(|team| team.is_whole(comm));
+        let (Some(whole), Some(rows)) = (whole, sharing.rows) else {
+            return Shape {
+                pattern: Pattern::new(lists, start, |_| true),
+                known: Known::all(r).into(),
+                team: team.map(Rc::new),
+            };
         };
-        Shape { pattern, team }
+        let columns = distinct(rows.columns().iter().copied());
+        // What a rank adds to, and what it has.
+        let here = |body: usize| {
+            let columns_of = start[body] as u32..start[body + 1] as u32;
+            let first = columns.partition_point(|&c| c < columns_of.start);
+            let touched = columns.get(first).is_some_and(|c| columns_of.contains(c));
+            touched || columns_of.into_iter().any(|c| whole.has(c))
+        };
+        let Some(more) = &sharing.known else {
+            return Shape {
+                pattern: Pattern::new(lists, start, here),
+                known: Known::all(r).into(),
+                team: team.map(Rc::new),
+            };
+        };
+        // Whole bodies are known: those of the columns, and those that they have common entries with.
+        let body = |c: u32| start.partition_point(|&s| s <= c as usize) as u32 - 1;
+        let of_columns = columns.iter().copied().chain(whole.dofs());
+        let mut bodies = distinct(of_columns.chain(more.iter().copied()).map(body));
+        let in_rows: Vec<u32> = bodies
+            .iter()
+            .copied()
+            .filter(|&b| here(b as usize))
+            .collect();
+        let met = in_rows
+            .iter()
+            .flat_map(|&b| lists[b as usize].iter().copied());
+        bodies = distinct(bodies.iter().copied().chain(met));
+        let columns_of = |&b: &u32| start[b as usize] as u32..start[b as usize + 1] as u32;
+        let names: Vec<u32> = bodies.iter().flat_map(columns_of).collect();
+        let known = Known::some(whole, names.clone());
+        let number = |b: &u32| bodies.binary_search(b).expect("a known body") as u32;
+        let is_here: Vec<bool> = bodies
+            .iter()
+            .map(|b| in_rows.binary_search(b).is_ok())
+            .collect();
+        let lists: Vec<Vec<u32>> = (bodies.iter().zip(&is_here))
+            .map(|(&b, here)| match here {
+                true => lists[b as usize].iter().map(number).collect(),
+                false => Vec::new(),
+            })
+            .collect();
+        let mut starts = vec![0];
+        for columns in bodies.iter().map(columns_of) {
+            starts.push(starts[starts.len() - 1] + columns.len());
+        }
+        Shape {
+            pattern: Pattern::new(&lists, &starts, |b| is_here[b]),
+            known: known.into(),
+            team: team.map(|team| team.narrowed(&names).into()),
+        }
     }
 
     /// The ranks that share factors of this shape, if there are many columns.

@@ -18,7 +18,7 @@ use crate::Result;
 /// The way from the columns of this rank's rows to those who factor them, and back.
 pub struct Spread {
     team: Rc<Team>,
-    /// Columns that this rank has or that are its ghosts, each with its place here.
+    /// Columns that this rank has or that are its ghosts, each with its place among shares.
     near: Vec<(u32, u32)>,
     /// The other columns in the order of the owners' numbers, and the way to the owners; `None` where no rank has any.
     far: Vec<u32>,
@@ -27,7 +27,7 @@ pub struct Spread {
     own: PetscVec,
     /// The same with the ghosts.
     shares: RefCell<Vec<f64>>,
-    /// A number for every column; only those of this rank's rows are in use.
+    /// A number for every column that is known; only those of this rank's rows are in use.
     work: RefCell<Vec<f64>>,
 }
 
@@ -87,7 +87,7 @@ impl Spread {
     }
 
     /// c ← A⁺ (b + Σ c), the sum over the ranks, of which each has a share in its columns here, and gets the solution
-    /// there; `b` is the same on every rank. Collective.
+    /// there; `b` is the same wherever columns are known. Collective.
     pub fn solve(&self, factor: &Gram, work: &mut [f64], b: Option<&[f64]>) -> Result<()> {
         let mut shares = self.shares.borrow_mut();
         shares.fill(0.0);

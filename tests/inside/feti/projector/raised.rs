@@ -57,7 +57,7 @@ fn projected(g: &Rows, chosen: &[bool], gram: &Gram, x: &[f64]) -> Vec<f64> {
             .map(|&on| f64::from(u8::from(on)))
             .collect::<Vec<_>>(),
     );
-    let mut c = vec![0.0; gram.n()];
+    let mut c = vec![0.0; gram.r()];
     held.add_transpose(x, &mut c);
     gram.solve(&mut c);
     let mut out = x.to_vec();
@@ -117,7 +117,7 @@ fn rows_that_are_put_back_need_no_other_factor() {
         let Factor::Sparse { factor, .. } = &base.factor else {
             panic!("there are many motions")
         };
-        let mut whole: Vec<f64> = (0..base.n())
+        let mut whole: Vec<f64> = (0..base.r())
             .map(|k| ((k * 29) % 17) as f64 - 8.0)
             .collect();
         let mut own: Vec<f64> = factor
@@ -148,7 +148,7 @@ fn numbers_that_are_renewed_are_those_computed_at_once() {
             let chosen: Vec<bool> = (0..g.n())
                 .map(|i| (i * 31 + 7) % 41 != round && (i * 17) % 53 != round / 2)
                 .collect();
-            let renewed = numbers.renewed(comm, (&shape.pattern, None), &g, &chosen);
+            let renewed = numbers.renewed(comm, &shape, &g, &chosen);
             let once = shape.product(comm, &g, &g, |i| chosen[i]);
             assert_eq!(renewed.val, once.val, "round {round}");
         }
