@@ -46,6 +46,8 @@ pub(super) fn hold(body: &mut BodySpec, form: &Form) -> Result<()> {
             on_axis.push((2 * node, 0.0));
         }
     }
-    body.given.extend(on_axis);
+    if !on_axis.is_empty() {
+        body.given.extend(on_axis);
+    }
     Ok(())
 }

@@ -30,11 +30,15 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
             }
         };
         body.mesh = Mesh::Cells(mesh);
-        // The nodes have been mapped.
-        body.map = None;
-        body.cut = Cut::AsItIs;
+        // The nodes have been mapped. What copies share stays one where nothing changes.
+        if body.map.is_some() {
+            body.map = None;
+        }
+        if body.cut != Cut::AsItIs {
+            body.cut = Cut::AsItIs;
+        }
     }
-    let Mesh::Cells(mesh) = &mut body.mesh else {
+    let Mesh::Cells(mesh) = &body.mesh else {
         return Ok(());
     };
     let components = form.components(mesh.dim);
@@ -46,20 +50,21 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     let whole = body.integration.is_empty();
     let key = (Arc::as_ptr(mesh) as usize, n);
     if let (true, Some((_, done))) = (whole, before.copies.get(&key)) {
-        *mesh = done.clone();
+        body.mesh = Mesh::Cells(done.clone());
         return Ok(());
     }
     if let Err(message) = check(mesh, form, &body.integration) {
         let (written, name) = (&body.written, &body.name);
         return Err(Error::Input(format!("{written}body `{name}`: {message}")));
     }
-    let written = mesh.clone();
+    let (written, mut mesh) = (mesh.clone(), mesh.clone());
     if n > 0 {
-        before.cut(mesh, n);
+        before.cut(&mut mesh, n);
     }
     if whole {
         before.copies.insert(key, (written, mesh.clone()));
     }
+    body.mesh = Mesh::Cells(mesh);
     Ok(())
 }
 

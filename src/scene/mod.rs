@@ -54,7 +54,7 @@ pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use interfaces::Interfaces;
 pub use loads::{SteppedMesh, Stepping};
 pub use model::body::{
-    free_all_round, held_all_round, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, SIDES,
+    free_all_round, held_all_round, BodyKind, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, SIDES,
 };
 pub use model::cells::{Cells, NumberFormat, Tone};
 pub use model::expr::gradient::WithGradient;

@@ -108,23 +108,37 @@ pub enum Cut {
     Into(usize),
 }
 
-/// One body.
+/// One body: what each copy has by itself, and what copies share ([`BodyKind`], whose fields are read and changed as if
+/// they were its own).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodySpec {
     /// Its name, unique in the scene.
     pub name: String,
     /// Elements and subdomains.
     pub mesh: Mesh,
+    /// How the nodes of the mesh, bent into shape, come to their places; `None`: they are there.
+    pub motion: Option<Motion>,
+    /// How the coordinates of its coefficients lie in space: a copy takes them along. `None`: as those of space.
+    pub frame: Option<Motion>,
+    /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
+    pub place: [usize; 3],
+    /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
+    pub moved: Option<Arc<FxHashMap<usize, [f64; 3]>>>,
+    /// Where it was written ("scene.toml:12: "), or empty.
+    pub written: String,
+    /// Copies share it until one of them changes it.
+    kind: Arc<BodyKind>,
+}
+
+/// What copies of a body have in common, apart from their mesh: many copies take the memory of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyKind {
     /// The order of the elements of a box, 1 or 2; meshes of cells have their own.
     pub order: usize,
     /// The subdomains of a mesh of cells.
     pub cut: Cut,
     /// How the box is bent into shape; `None`: not at all.
     pub map: Option<Map>,
-    /// How the nodes of the mesh, bent into shape, come to their places; `None`: they are there.
-    pub motion: Option<Motion>,
-    /// How the coordinates of its coefficients lie in space: a copy takes them along. `None`: as those of space.
-    pub frame: Option<Motion>,
     /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
     pub rho: Field,
     /// Poisson's ratio, between −1 and ½; ignored in scalar problems.
@@ -145,12 +159,19 @@ pub struct BodySpec {
     pub given: Vec<(usize, f64)>,
     /// Dirichlet conditions.
     pub dirichlet: Sides,
-    /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
-    pub place: [usize; 3],
-    /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
-    pub moved: Option<Arc<FxHashMap<usize, [f64; 3]>>>,
-    /// Where it was written ("scene.toml:12: "), or empty.
-    pub written: String,
+}
+
+impl Deref for BodySpec {
+    type Target = BodyKind;
+    fn deref(&self) -> &BodyKind {
+        &self.kind
+    }
+}
+
+impl DerefMut for BodySpec {
+    fn deref_mut(&mut self) -> &mut BodyKind {
+        Arc::make_mut(&mut self.kind)
+    }
 }
 
 impl BodySpec {
@@ -159,24 +180,26 @@ impl BodySpec {
         BodySpec {
             name: name.into(),
             mesh: mesh.into(),
-            order: 1,
-            cut: Cut::AsItIs,
-            map: None,
             motion: None,
             frame: None,
-            rho: Field::constant(1.0),
-            poisson: Field::constant(POISSON),
-            load: Load::constant(0.0),
-            surface: Vec::new(),
-            springs: Vec::new(),
-            ramp: None,
-            integration: Vec::new(),
-            forces: Vec::new(),
-            given: Vec::new(),
-            dirichlet: free_all_round(),
             place: [0; 3],
             moved: None,
             written: String::new(),
+            kind: Arc::new(BodyKind {
+                order: 1,
+                cut: Cut::AsItIs,
+                map: None,
+                rho: Field::constant(1.0),
+                poisson: Field::constant(POISSON),
+                load: Load::constant(0.0),
+                surface: Vec::new(),
+                springs: Vec::new(),
+                ramp: None,
+                integration: Vec::new(),
+                forces: Vec::new(),
+                given: Vec::new(),
+                dirichlet: free_all_round(),
+            }),
         }
     }
 

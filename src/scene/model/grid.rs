@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::body::{held_all_round, BodySpec, Load, Sides, SIDES};
+use super::body::{held_all_round, BodySpec, Load, SIDES};
 use crate::mesh::{places, BoxMesh};
 
 /// A box cut into `bodies[0]` × `bodies[1]` (× `bodies[2]`) equal bodies.
@@ -34,11 +34,9 @@ impl GridSpec {
     }
 
     fn held(bodies: [usize; 3], mesh: BoxMesh) -> Self {
-        let whole = BodySpec {
-            load: Load::constant(1.0),
-            dirichlet: held_all_round(),
-            ..BodySpec::new("b", mesh)
-        };
+        let mut whole = BodySpec::new("b", mesh);
+        whole.load = Load::constant(1.0);
+        whole.dirichlet = held_all_round();
         GridSpec { bodies, whole }
     }
 
@@ -50,11 +48,23 @@ impl GridSpec {
             .grid()
             .expect("a grid of bodies is cut from a box");
         let BoxMesh { origin, size, .. } = *grid;
-        // Bodies at the same sides of the grid share their given values.
-        let mut known: HashMap<[bool; SIDES.len()], Sides> = HashMap::new();
+        // Bodies at the same sides of the grid share what they have in common.
+        let mut known: HashMap<[bool; SIDES.len()], BodySpec> = HashMap::new();
         let body = |place: [usize; 3]| {
             let outer = |s: usize| place[s / 2] == [0, bodies[s / 2] - 1][s % 2];
-            let mut body = whole.clone();
+            let of_sides = |outer: [bool; SIDES.len()]| {
+                let mut body = whole.clone();
+                body.rho = whole.rho.over(*bodies);
+                body.poisson = whole.poisson.over(*bodies);
+                body.surface.retain(|load| outer[load.side]);
+                body.springs.retain(|(side, _)| outer[*side]);
+                let inner = body.dirichlet.iter_mut().zip(outer);
+                let inner = inner.filter(|(_, outer)| !outer);
+                inner.for_each(|(given, _)| *given = [const { None }; 3]);
+                body
+            };
+            let at = std::array::from_fn(outer);
+            let mut body = known.entry(at).or_insert_with(|| of_sides(at)).clone();
             let [i, j, k] = place;
             body.name = match whole.mesh.dim() {
                 2 => format!("{}{i}_{j}", whole.name),
@@ -68,18 +78,6 @@ impl GridSpec {
                 mesh.size[d] = size[d] / bodies[d] as f64;
             }
             body.mesh = mesh.into();
-            body.rho = whole.rho.over(*bodies);
-            body.poisson = whole.poisson.over(*bodies);
-            body.surface.retain(|load| outer(load.side));
-            body.springs.retain(|(side, _)| outer(*side));
-            let at = std::array::from_fn(outer);
-            let given = known.entry(at).or_insert_with(|| {
-                let mut given = whole.dirichlet.clone();
-                let inner = given.iter_mut().zip(at).filter(|(_, outer)| !outer);
-                inner.for_each(|(given, _)| *given = [const { None }; 3]);
-                given
-            });
-            body.dirichlet = given.clone();
             body
         };
         places(*bodies).map(body).collect()

@@ -167,7 +167,7 @@ struct OfGroups {
 impl OfGroups {
     /// Gives a body what belongs to its groups, in the place of what it has.
     fn apply(&self, body: &mut BodySpec) {
-        let mesh = &body.mesh;
+        let mesh = body.mesh.clone();
         for (is_pressure, list) in &self.forces {
             let own = |load: &SurfaceLoad| matches!(load.force, Force::Pressure(_)) == *is_pressure;
             body.surface.retain(|load| !own(load));
