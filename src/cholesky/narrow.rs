@@ -1,7 +1,7 @@
 //! The part of a team's pattern that one rank needs.
 //!
-//! A factorisation of many bodies is analysed as a whole. After that a rank works with the fronts that it has, and knows
-//! of others what it exchanges with them: its memory grows with its part of the bodies, not with all of them.
+//! A factorisation of many bodies is analysed as a whole. After that a rank works with the fronts that it has, and
+//! knows of others what it exchanges with them: its memory grows with its part of the bodies, not with all of them.
 
 use super::symbolic::{Front, Symbolic};
 use super::team::{Run, Team};

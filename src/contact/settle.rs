@@ -13,7 +13,8 @@ use crate::parallel::exchange::gather_all;
 type Row = Vec<(u64, u64)>;
 
 /// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors that
-/// are known here. It is a combination of those motions that nothing holds or drives. `None` if there is no such motion. Collective.
+/// are known here. It is a combination of those motions that nothing holds or drives. `None` if there is no such
+/// motion. Collective.
 pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
     let motions = dual.natural.unheld();
     if motions.is_empty() {

@@ -29,6 +29,9 @@ pub struct Facts {
     pub floating_bodies: usize,
     /// Dimension of all kernels, r.
     pub kernel_dimension: usize,
+    /// The part of r that this rank has numbers for: the kernels of its own bodies and of those around them, and what
+    /// its part of the natural coarse problem leads to. r where it is small, and where ranks do not share one factor.
+    pub kernel_dimension_here: usize,
     /// Primal dofs of all bodies.
     pub primal: usize,
     /// Adaptive primal constraints in each body; empty where no edge or face is tested.
@@ -79,6 +82,7 @@ impl Facts {
             inequalities: counts[1] as usize,
             floating_bodies: natural.columns.floating(),
             kernel_dimension: natural.r,
+            kernel_dimension_here: natural.known().n(),
             primal: stiffness.space.n_global,
             kinds: kinds.len(),
             implicit_kinds: kinds.iter().filter(|k| k.is_implicit()).count(),

@@ -171,7 +171,8 @@ pub enum ProjectorKind {
     Diagonal,
     /// Q = M⁻¹; on the rows between bodies alone where their stiffnesses differ by more than 10⁷.
     Preconditioner,
-    /// Q = M⁻¹ where some bodies float and bodies differ in stiffness or coefficients jump inside them, else I.
+    /// Q = M⁻¹ where some bodies float and bodies differ in stiffness or coefficients jump inside them, superlumped
+    /// where many elastic bodies slide on each other and none are tied, else I.
     Auto,
 }
 

@@ -11,5 +11,5 @@ mod petsc_options;
 mod petsc_shells;
 mod report_contact;
 mod soak;
-mod support;
+pub(crate) mod support;
 mod traffic;

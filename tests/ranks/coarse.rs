@@ -2,7 +2,8 @@
 
 use crate::support::sample::all_cases;
 use crate::support::{mpi, program};
-use mpi::Scratch;
+use fetifeti::{FetiFeti, MethodSettings, Scene};
+use mpi::{as_rank, Scratch};
 use program::{ended, run_fetifeti};
 use serde_json::Value;
 use std::process::Command;
@@ -122,4 +123,83 @@ fn vectors_of_all_columns_are_not_summed() {
         );
         assert!(communication["reductions_per_iteration"].as_f64().unwrap() < 8.0);
     }
+}
+
+/// A long pile of elastic blocks in contact, stiff and soft ones in turn if they are not `alike`.
+fn pile(alike: bool, joined: &str) -> String {
+    let young = if alike {
+        "1000"
+    } else {
+        "1000*(1 + 999*mod(bi + bj + bk, 2))"
+    };
+    format!(
+        "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [3, 3, 24]\nsize = [3, 3, 24]\n\
+         subdomains = [1, 1, 1]\nelements_per_subdomain = 1\nyoung = \"{young}\"\n\
+         load = [\"0.5*sin(1 + 1.7*bi + 2.3*bj + 3.1*bk)\", -0.05, \"0.5*cos(1 + 2.7*bi + 1.3*bj)\"]\n\
+         dirichlet = {{ bottom = 0, left = {{ x = 0 }}, right = {{ x = 0 }}, front = {{ z = 0 }}, \
+         back = {{ z = 0 }} }}\n[interface]\ndefault = \"contact\"\n{joined}"
+    )
+}
+
+/// With bodies on many ranks a rank has numbers for a part of the rigid motions, the same on all only where one rank is
+/// all there are.
+#[test]
+fn a_rank_knows_the_motions_around_its_own_bodies() {
+    let ranks = as_rank(|session, _| {
+        let scene = Scene::parse("pile.toml", &pile(true, ""))?;
+        let (size, rank) = (session.size(), session.rank());
+        let share = |s: &usize| s * size / scene.n_subdomains() == rank;
+        let problem = scene.substructures(&|s| share(&s))?;
+        let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+        let facts = solver.facts();
+        let (all, here) = (facts.kernel_dimension, facts.kernel_dimension_here);
+        assert!(all > 300, "few motions are another case: {all}");
+        match size {
+            1 => assert_eq!(here, all),
+            // A quarter of the pile, and what is beside it and between the parts.
+            4 => assert!(4 * here < 3 * all, "rank {rank}: {here} of {all}"),
+            _ => assert!(here < all, "rank {rank}: {here} of {all}"),
+        }
+        let solution = solver.solve()?;
+        assert!(solution.converged());
+        Ok(())
+    });
+    for n in [1, 2, 4] {
+        let out = ranks.run(n, "pile");
+        assert_eq!(out.code, 0, "{n} ranks: {}", out.all());
+    }
+}
+
+/// Where bodies differ in stiffness and rows switch between many of them, `auto` takes the diagonal for Q: the same
+/// answer as with M⁻¹, on any number of ranks, in not many more iterations. Where some are tied it takes M⁻¹.
+#[test]
+fn many_bodies_that_slide_have_the_diagonal_for_q() {
+    let scratch = Scratch::new("coarse-slide");
+    let write = |name: &str, text: String| {
+        let path = scratch.path(name);
+        std::fs::write(&path, text).expect("the scene can be written");
+        path
+    };
+    let slides = write("slides.toml", pile(false, ""));
+    let tie = "[[tie]]\nbodies = [\"b1_1_4\", \"b1_1_5\"]\n";
+    let tied = write("tied.toml", pile(false, tie));
+    let of = |r: &Value| {
+        let numbers = [&r["energy"], &r["iterations"]["total"]];
+        let [energy, iterations] = numbers.map(|n| n.as_f64().expect("a number"));
+        (energy, iterations)
+    };
+    let exact = report(1, &slides, &scratch, "-fetifeti_projector preconditioner");
+    let (energy, iterations) = of(&exact);
+    for ranks in [1, 2, 4] {
+        let r = report(ranks, &slides, &scratch, "");
+        assert_eq!(r["projector"], "diagonal", "{ranks} ranks");
+        let (e, n) = of(&r);
+        assert!(
+            (e / energy - 1.0).abs() < 1e-9,
+            "{ranks} ranks: {e}, not {energy}"
+        );
+        assert!(n < 2.0 * iterations, "{ranks} ranks: {n} and {iterations}");
+    }
+    let r = report(2, &tied, &scratch, "");
+    assert_eq!(r["projector"], "preconditioner");
 }

@@ -4,9 +4,9 @@
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
+use super::known::Known;
 use super::motion::{Motion, NOTHING_SOLVED};
 use super::pattern::Pattern;
-use super::shape::Shape;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -16,10 +16,14 @@ use crate::parallel::exchange::{exchange_words, gather_all};
 
 /// The motions of single bodies that nothing holds, each with the name of the column that is left out for it. `a` has a
 /// unit diagonal. The rank that has the first column of a body looks at it. Collective.
-pub(super) fn alone(shape: &Shape, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
-    let (pattern, known) = (&shape.pattern, &*shape.known);
+pub(super) fn alone(
+    (pattern, known): (&Pattern, &Known),
+    team: &Team,
+    a: &Csr,
+    scale: &[f64],
+) -> Vec<(u32, Motion)> {
     let bodies = bodies_here(pattern, team);
-    let elsewhere = rows_of_others(shape, team, a, &bodies);
+    let elsewhere = rows_of_others((pattern, known), team, a, &bodies);
     // [column, number of entries, (column, coefficient)…] for each motion.
     let mut words: Vec<u64> = Vec::new();
     for columns in bodies.into_iter().map(|b| pattern.columns(b as usize)) {
@@ -67,8 +71,12 @@ fn bodies_here(pattern: &Pattern, team: &Team) -> Vec<u32> {
 
 /// Of bodies whose first column this rank has: the rows of their other columns that other ranks have, in the columns
 /// of the body. Collective.
-fn rows_of_others(shape: &Shape, team: &Team, a: &Csr, bodies: &[u32]) -> FxHashMap<u32, Vec<f64>> {
-    let (pattern, known) = (&shape.pattern, &*shape.known);
+fn rows_of_others(
+    (pattern, known): (&Pattern, &Known),
+    team: &Team,
+    a: &Csr,
+    bodies: &[u32],
+) -> FxHashMap<u32, Vec<f64>> {
     let size = team.comm().size() as usize;
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
     for columns in bodies.iter().map(|&b| pattern.columns(b as usize)) {

@@ -63,8 +63,8 @@ impl Gram {
         Gram::without(shape, a, &[])
     }
 
-    /// The same, without these columns (by their names) as well, each of which depends on the others though its pivot does not show it.
-    /// They are many. Collective.
+    /// The same, without these columns (by their names) as well, each of which depends on the others though its pivot
+    /// does not show it. They are many. Collective.
     pub fn without(shape: &Shape, a: Csr, hidden: &[u32]) -> Gram {
         match shape.team() {
             None => Gram::few(shape, &a),
@@ -99,7 +99,7 @@ impl Gram {
         let known = &shape.known;
         let mut scale = scale_own_rows(shape, team, &mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
-        let mut alone = alone(shape, team, &a, &scale);
+        let mut alone = alone((&shape.pattern, known), team, &a, &scale);
         let minus = hidden.iter().map(|&k| minus_column(known, team, &a, k));
         let minus: Vec<Vec<f64>> = minus.collect();
         for k in alone.iter().map(|m| &m.0).chain(hidden) {

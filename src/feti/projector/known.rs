@@ -298,3 +298,7 @@ impl Known {
         (names, entries)
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/projector/known.rs"]
+mod tests;

@@ -22,11 +22,6 @@ impl Motion {
         self.0.iter().map(|&(c, v)| v * x[c as usize]).sum()
     }
 
-    /// Σ of the sizes of these products.
-    pub fn size(&self, x: &[f64]) -> f64 {
-        self.0.iter().map(|&(c, v)| (v * x[c as usize]).abs()).sum()
-    }
-
     /// The largest coefficient.
     pub fn largest(&self) -> f64 {
         self.0.iter().fold(0.0, |a, e| a.max(e.1.abs()))
@@ -59,13 +54,6 @@ impl Motion {
         let of_column = |s: &[(u32, f64)]| (s[0].0, s.iter().map(|e| e.1).sum());
         let sums: Vec<(u32, f64)> = all.chunk_by(|a, b| a.0 == b.0).map(of_column).collect();
         Motion::above(NOTHING, sums.iter().copied())
-    }
-
-    /// x ← x + α times the coefficients.
-    pub fn add(&self, alpha: f64, x: &mut [f64]) {
-        for &(c, v) in &self.0 {
-            x[c as usize] += alpha * v;
-        }
     }
 
     /// The work of a row of G on it.

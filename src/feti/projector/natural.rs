@@ -139,7 +139,8 @@ impl NaturalCoarse {
         if r > 0 {
             natural.all = natural.all_rows(problem, stiffness);
             natural.spread = spread(comm, problem, stiffness);
-            natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
+            let (differ, switch) = ((natural.spread, varies), natural.slides(stiffness));
+            natural.projector = choose(preconditioner, wanted, differ, switch);
             let start = natural.columns.start();
             let lists = meeting(comm, &natural.all, &natural.all, start);
             let order = || {

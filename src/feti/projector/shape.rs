@@ -88,54 +88,29 @@ impl Shape {
                 team: team.map(Rc::new),
             };
         };
-        let columns = distinct(rows.columns().iter().copied());
-        // What a rank adds to, and what it has.
-        let here = |body: usize| {
-            let columns_of = start[body] as u32..start[body + 1] as u32;
-            let first = columns.partition_point(|&c| c < columns_of.start);
-            let touched = columns.get(first).is_some_and(|c| columns_of.contains(c));
-            touched || columns_of.into_iter().any(|c| whole.has(c))
-        };
+        let here = Here::new(whole, rows, start);
         let Some(more) = &sharing.known else {
+            let is_here = |b: usize| here.owned.contains(b) || here.touched.contains(b);
             return Shape {
-                pattern: Pattern::new(lists, start, here),
+                pattern: Pattern::new(lists, start, is_here),
                 known: Known::all(r).into(),
                 team: team.map(Rc::new),
             };
         };
-        // Whole bodies are known: those of the columns, and those that they have common entries with.
-        let body = |c: u32| start.partition_point(|&s| s <= c as usize) as u32 - 1;
-        let of_columns = columns.iter().copied().chain(whole.dofs());
-        let mut bodies = distinct(of_columns.chain(more.iter().copied()).map(body));
-        let in_rows: Vec<u32> = bodies
-            .iter()
-            .copied()
-            .filter(|&b| here(b as usize))
-            .collect();
-        let met = in_rows
-            .iter()
-            .flat_map(|&b| lists[b as usize].iter().copied());
-        bodies = distinct(bodies.iter().copied().chain(met));
+        let bodies = here.known(whole, lists, more);
         let columns_of = |&b: &u32| start[b as usize] as u32..start[b as usize + 1] as u32;
         let names: Vec<u32> = bodies.iter().flat_map(columns_of).collect();
         let known = Known::some(whole, names.clone());
         let number = |b: &u32| bodies.binary_search(b).expect("a known body") as u32;
-        let is_here: Vec<bool> = bodies
-            .iter()
-            .map(|b| in_rows.binary_search(b).is_ok())
-            .collect();
-        let lists: Vec<Vec<u32>> = (bodies.iter().zip(&is_here))
-            .map(|(&b, here)| match here {
-                true => lists[b as usize].iter().map(number).collect(),
-                false => Vec::new(),
-            })
+        let lists: Vec<Vec<u32>> = (bodies.iter())
+            .map(|&b| here.list(b as usize, lists).map(number).collect())
             .collect();
         let mut starts = vec![0];
         for columns in bodies.iter().map(columns_of) {
             starts.push(starts[starts.len() - 1] + columns.len());
         }
         Shape {
-            pattern: Pattern::new(&lists, &starts, |b| is_here[b]),
+            pattern: Pattern::new(&lists, &starts, |_| true),
             known: known.into(),
             team: team.map(|team| team.narrowed(&names).into()),
         }
@@ -151,6 +126,67 @@ impl Shape {
         let team = self.team.as_ref();
         team.is_none_or(|team| team.has(column as u32))
     }
+}
+
+/// The bodies in whose rows of the matrix a rank has entries.
+struct Here<'a> {
+    start: &'a [usize],
+    /// Those with a column that it has in the factor.
+    owned: Set,
+    /// Those that its rows of G touch: it adds to blocks between them.
+    touched: Set,
+}
+
+/// Bodies, increasing.
+struct Set(Vec<u32>);
+
+impl Set {
+    fn contains(&self, body: usize) -> bool {
+        self.0.binary_search(&(body as u32)).is_ok()
+    }
+}
+
+impl<'a> Here<'a> {
+    fn new(team: &Team, rows: &Rows, start: &'a [usize]) -> Here<'a> {
+        let columns = distinct(rows.columns().iter().copied());
+        let of = |columns: &mut dyn Iterator<Item = u32>| {
+            Set(distinct(columns.map(|c| body_of(start, c))))
+        };
+        Here {
+            start,
+            owned: of(&mut team.own_dofs()),
+            touched: of(&mut columns.into_iter()),
+        }
+    }
+
+    /// The bodies whose columns the rank has to know, as wholes, increasing: those of its rows of G and of the matrix,
+    /// of its fronts and of `more`.
+    fn known(&self, team: &Team, lists: &[Vec<u32>], more: &[u32]) -> Vec<u32> {
+        let columns = team.dofs().chain(more.iter().copied());
+        let of_columns = columns.map(|c| body_of(self.start, c));
+        let met = self.owned.0.iter().flat_map(|&b| &lists[b as usize]);
+        let met = met.chain(&self.touched.0).copied();
+        distinct(of_columns.chain(met))
+    }
+
+    /// The bodies for which the rank has entries in the rows of a body, of those in `lists`. One that meets all others,
+    /// such as a floor, has them all where its rows are; elsewhere it has those to which something is added.
+    fn list<'b>(
+        &'b self,
+        body: usize,
+        lists: &'b [Vec<u32>],
+    ) -> impl Iterator<Item = &'b u32> + 'b {
+        let owned = self.owned.contains(body);
+        let touched = self.touched.contains(body);
+        let list = lists[body].iter();
+        list.filter(move |&&b| owned || (touched && self.touched.contains(b as usize)))
+    }
+}
+
+/// The body of a column.
+fn body_of(start: &[usize], column: u32) -> u32 {
+    // Of bodies that start there it is the last one: the others have no columns.
+    start.partition_point(|&s| s <= column as usize) as u32 - 1
 }
 
 /// The order of elimination, and who has which part. `bodies` has for each body those that it meets. Collective.

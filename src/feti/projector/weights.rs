@@ -2,6 +2,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::gram::FEW;
 use super::natural::NaturalCoarse;
 use super::rows::Rows;
 use super::sweep;
@@ -9,7 +10,7 @@ use crate::feti::cost::variation::JUMPS;
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
-use crate::parallel::exchange::sum_all;
+use crate::parallel::exchange::{any, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
@@ -18,12 +19,14 @@ use crate::Result;
 /// the ratio. Up to it Q is M⁻¹ itself.
 pub(super) const APART: f64 = 1e7;
 
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them.
-/// It is called only if some body floats.
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them;
+/// its diagonal where rows `switch` between many bodies that slide on each other. It is called only if some body
+/// floats.
 pub(super) fn choose(
     preconditioner: &Preconditioner,
     wanted: ProjectorKind,
     (spread, varies): (f64, f64),
+    switch: bool,
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
         return match (wanted, preconditioner.kind) {
@@ -37,6 +40,7 @@ pub(super) fn choose(
     match (differ, preconditioner.kind) {
         (false, _) => ProjectorKind::Identity,
         (true, PcType::None) => ProjectorKind::Diagonal,
+        (true, _) if switch => ProjectorKind::Diagonal,
         (true, _) => ProjectorKind::Preconditioner,
     }
 }
@@ -66,6 +70,16 @@ pub(super) fn spread(
 }
 
 impl NaturalCoarse {
+    /// Whether rows switch between many bodies of elasticity, none of which are tied to each other. M⁻¹G then takes
+    /// hundreds of products with M⁻¹ in each step of the contact loop, and saves few iterations: rows without friction
+    /// carry normal forces alone (docs/theory.md, section 6). Collective.
+    pub(super) fn slides(&self, stiffness: &Stiffness) -> bool {
+        let jump = &stiffness.jump;
+        let mut rows = jump.rows_between_bodies();
+        let tied = rows.any(|i| !jump.inequality[i] && jump.is_candidate(i));
+        self.r > FEW && self.columns.most() > 1 && !any(stiffness.comm(), tied)
+    }
+
     /// diag(B_D diag(K) B_Dᵀ) on the owned rows, with diag(G)⁻¹ in place of G⁻¹ in coupled blocks: any positive
     /// diagonal gives a projector. Collective.
     pub fn superlumped(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {

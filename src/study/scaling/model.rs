@@ -175,8 +175,8 @@ pub struct Model {
 /// per entry.
 const FILL: f64 = 93.0;
 
-/// Bytes that every rank has for each rigid motion, whoever factors it: its order, the structure of the fronts, and who
-/// has what.
+/// Bytes that every rank has for each rigid motion while the order is found, whoever factors it: its place, the
+/// structure of the fronts, and who has what.
 const KNOWN: f64 = 200.0;
 
 /// Bytes of pattern and entries of Gᵀ G for each rigid motion in a rank's rows of the factor and of G.
@@ -304,11 +304,11 @@ impl Model {
         let one_after_other = [shares.rows, r.powf(1.5) * shares.work];
         setup.factor = self.laws[FACTOR].at(&one_after_other);
         // The largest entries of columns and stiffnesses of bodies; the product or, where ranks share the factor, what
-        // subtrees leave to the rows above, and the scaling.
+        // subtrees leave to the rows above.
         setup.natural += 3.0 * sum(r);
         setup.factor += match shared {
             0.0 => sum(NEAR * r),
-            _ => network.messages(shares.messages, 8.0 * LEFT * r) + sum(r),
+            _ => network.messages(shares.messages, 8.0 * LEFT * r),
         };
         // A rank makes the cuts of twice all bodies and of its own. All hear of all neighbours and of the order.
         let cuts = (r + 1.0).log2().min(2.0 + (r / ranks + 1.0).log2());
