@@ -141,39 +141,62 @@ impl NaturalCoarse {
             natural.spread = spread(comm, problem, stiffness);
             let (differ, switch) = ((natural.spread, varies), natural.slides(stiffness));
             natural.projector = choose(preconditioner, wanted, differ, switch);
-            let start = natural.columns.start();
-            let lists = meeting(comm, &natural.all, &natural.all, start);
-            let order = || {
-                let blocks = Blocks::of_rows(comm, &natural.all, start);
-                (blocks, positions(comm, problem))
-            };
-            // With Q = M⁻¹ rows reach far, and the solver of the user's choice has its own columns on each rank.
-            let chosen = Options::new(&stiffness.session, prefix).any_but("redundancy")?;
-            let all = chosen || natural.projector == ProjectorKind::Preconditioner;
-            let names = |body: usize| {
-                let columns = natural.columns.of(body);
-                columns.start as u32..columns.end as u32
-            };
-            let of_bodies = problem.local.iter().flat_map(|sub| names(sub.body));
-            let sharing = Sharing {
-                known: (!all).then(|| distinct(of_bodies)),
-                ..natural.sharing()
-            };
-            let shape = Shape::ordered(comm, &lists, start, order, &sharing);
-            drop(sharing);
-            natural.known = shape.known.clone();
-            natural.all = natural.all.numbered(&shape.known);
-            let first = |sub: &Subdomain| natural.known.numbers(names(sub.body)).start;
-            natural.first_column = problem.local.iter().map(first).collect();
-            natural.shape = Some(shape);
+            natural.arrange(problem, stiffness)?;
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.mended {
                 natural.projector = ProjectorKind::Diagonal;
+                // Ranks that share a factor need not know all columns for that.
+                if natural.team_of_all(comm) {
+                    natural.arrange(problem, stiffness)?;
+                }
                 natural.renew(problem, stiffness, preconditioner)?;
             }
         }
         Ok(natural)
+    }
+
+    /// Whether all ranks share one factor of many columns.
+    fn team_of_all(&self, comm: &SimpleCommunicator) -> bool {
+        let team = self.shape.as_ref().and_then(Shape::team);
+        team.is_some_and(|team| team.is_whole(comm))
+    }
+
+    /// Finds the sparsity of GᵀG, the order in which it is factored, and the columns that this rank has to know for the
+    /// weight Q that is in use. Collective.
+    fn arrange(&mut self, problem: &Substructures, stiffness: &Stiffness) -> Result<()> {
+        let comm = stiffness.comm();
+        self.all = self.all.named(&self.known);
+        let start = self.columns.start();
+        let lists = meeting(comm, &self.all, &self.all, start);
+        let order = || {
+            let blocks = Blocks::of_rows(comm, &self.all, start);
+            (blocks, positions(comm, problem))
+        };
+        // With Q = M⁻¹ rows reach far, and the solver of the user's choice has its own columns on each rank.
+        let chosen = Options::new(&stiffness.session, &self.prefix).any_but("redundancy")?;
+        let all = chosen || self.projector == ProjectorKind::Preconditioner;
+        let names = |body: usize| {
+            let columns = self.columns.of(body);
+            columns.start as u32..columns.end as u32
+        };
+        let of_bodies = problem.local.iter().flat_map(|sub| names(sub.body));
+        let sharing = Sharing {
+            known: (!all).then(|| distinct(of_bodies)),
+            ..self.sharing()
+        };
+        let shape = Shape::ordered(comm, &lists, start, order, &sharing);
+        drop(sharing);
+        let first = |sub: &Subdomain| shape.known.numbers(names(sub.body)).start;
+        self.first_column = problem.local.iter().map(first).collect();
+        self.all = self.all.numbered(&shape.known);
+        self.known = shape.known.clone();
+        self.shape = Some(shape);
+        // What is known of the last factor has other numbers.
+        self.last = RefCell::default();
+        self.numbers = RefCell::default();
+        self.way = RefCell::default();
+        Ok(())
     }
 
     /// Assembles G, Q G and Gᵀ Q G for the rows that hold now. Collective.
