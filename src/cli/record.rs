@@ -89,6 +89,7 @@ pub(super) fn report(
             energy_norm,
         }),
         notes: scene.notes.clone(),
+        warnings: Vec::new(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: solver.communication(),

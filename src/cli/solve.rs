@@ -206,8 +206,12 @@ pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> E
     ))
 }
 
+/// Prints and writes the record. Warnings are on standard error, also where nothing else is printed.
 fn write_report(destination: &Destination, report: &SolveReport, place: Place) -> Result<()> {
     destination.print(&summary::solve(report))?;
+    for warning in &report.warnings {
+        eprintln!("Warning: {warning}");
+    }
     destination.write_json("report.json", report)?;
     let solution = place.file("solution");
     let mut files = files(report);

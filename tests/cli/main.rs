@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cases;
 mod checkpoint;
 mod checkpoint_files;
 mod checkpoint_refused;

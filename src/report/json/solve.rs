@@ -89,6 +89,9 @@ pub struct SolveReport {
     /// What of the input is left out, ignored or replaced.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// What makes the answer doubtful: a sentence each, on standard error, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The values at the scene's probes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<ProbeValue>,
