@@ -8,7 +8,9 @@ use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
 use crate::feti::krylov::solve::Judge;
 use crate::feti::operators::dual::Dual;
-use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Numbers, Spectrum};
+use crate::feti::{
+    Communication, Facts, FreeMotion, LinearMethod, LinearSolution, Numbers, Spectrum,
+};
 use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
 use crate::solution::Solution;
@@ -110,10 +112,10 @@ impl FetiFeti {
         let _staged = self.solve_stage.scope()?;
         if self.facts().inequalities == 0 {
             let found = self.method.solve(None)?;
-            return self.certified(found, Vec::new());
+            return self.certified(self.method.at_rest(found), Vec::new());
         }
         let (found, steps) = contact::solve(&self.method, &self.settings.contact, start, observe)?;
-        self.certified(found, steps)
+        self.certified(self.method.at_rest(found), steps)
     }
 
     /// The solution, with a bound of its error if that was asked for. Collective.
@@ -266,6 +268,14 @@ impl FetiFeti {
     /// PETSc's own.
     pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
         self.method.check()
+    }
+
+    /// The motions of bodies that the rows which hold leave free: after a solve those that no load drives. The place of
+    /// the bodies along them is arbitrary, and a solution has the one nearest to the start. Collective.
+    pub fn free_motions(&self) -> Vec<FreeMotion> {
+        let dual = self.dual();
+        dual.natural
+            .free_motions(dual.comm(), self.problem(), &dual.stiffness)
     }
 
     /// Messages and reductions per iteration, over all iterations of the Krylov method so far; `None` if there were

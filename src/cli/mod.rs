@@ -5,6 +5,7 @@ mod balance;
 mod coefficient;
 mod contact;
 mod course;
+mod doubts;
 mod early;
 mod events;
 mod fields;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::args::Plan;
 use super::coefficient::Coefficient;
+use super::doubts;
 use super::first_rank::on_first_rank;
 use super::physics;
 use super::plan_record::report;
@@ -120,6 +121,9 @@ fn deflation(
 fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     let plan = scene.plan();
     let mut out = lines(&scene.notes);
+    let so =
+        "a load that drives this has no answer, and without one the place along it is arbitrary";
+    out += &lines(&doubts::free(&doubts::recorded(scene, &sizes.free), so));
     let _ = writeln!(out, "{}\n", plan.title);
     out += &bodies(&plan, sizes);
     out += &interfaces(scene, &plan);

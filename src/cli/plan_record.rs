@@ -1,6 +1,6 @@
 //! The record of a plan.
 
-use super::{physics, record};
+use super::{doubts, physics, record};
 use crate::feti::cost::sizes::Sizes;
 use crate::petsc::Session;
 use crate::report::json::{Multipliers, PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
@@ -21,6 +21,7 @@ pub(super) fn report(session: &Session, scene: &Scene, sizes: &Sizes) -> Result<
         ranks: session.size(),
         options: record::options(session)?,
         notes: scene.notes.clone(),
+        free_motions: doubts::recorded(scene, &sizes.free),
         bodies: bodies
             .map(|(b, &floating)| PlannedBody {
                 name: b.name.clone(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::course::Course;
-use super::{balance, contact, physics};
+use super::{balance, contact, doubts, physics};
 use crate::feti::projector::distributed::{self, Work};
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
@@ -89,7 +89,8 @@ pub(super) fn report(
             energy_norm,
         }),
         notes: scene.notes.clone(),
-        warnings: Vec::new(),
+        free_motions: doubts::recorded(scene, &solver.free_motions()),
+        warnings: doubts::beyond(session, scene, course),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: solver.communication(),

@@ -11,7 +11,7 @@ use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::record::{checks, report};
 use super::values::Values;
-use super::{inputs, maps, picture};
+use super::{doubts, inputs, maps, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::MethodSettings;
 use crate::mesh::deck;
@@ -208,6 +208,8 @@ pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> E
 
 /// Prints and writes the record. Warnings are on standard error, also where nothing else is printed.
 fn write_report(destination: &Destination, report: &SolveReport, place: Place) -> Result<()> {
+    let so = "no load drives this, and of all places along it the answer has the one nearest to the start";
+    destination.print(&lines(&doubts::free(&report.free_motions, so)))?;
     destination.print(&summary::solve(report))?;
     for warning in &report.warnings {
         eprintln!("Warning: {warning}");

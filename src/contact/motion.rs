@@ -69,7 +69,7 @@ pub fn check_many(
 /// # Errors
 /// As [`check`], and bodies that nothing holds.
 pub fn check_held(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
-    let held = dual.natural.check_held(dual.comm(), problem, load);
+    let held = dual.natural.check_held(problem, &dual.stiffness, load);
     if held.is_err() {
         check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
     }
@@ -88,9 +88,12 @@ fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]
     }
     let size = load.largest;
     let (rest, tolerance) = if natural.r <= FEW {
-        let (columns, free) = directions(dual.comm(), jump, &natural.all, natural.r);
-        let rest = nnls(&columns, &load.e, &free).1;
-        (Motion((0..).zip(rest).collect()), BALANCE)
+        let candidates: Vec<bool> = (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect();
+        let rows = natural.rows_without_noise(dual.comm(), &candidates);
+        let (columns, free) = directions(dual.comm(), jump, &rows, natural.r);
+        let rest = (0..).zip(nnls(&columns, &load.e, &free).1);
+        let rest = rest.filter(|&(c, v)| v.abs() > load.rounding[c as usize]);
+        (Motion(rest.collect()), BALANCE)
     } else {
         let wanted = (&load.e[..], 0.1 * NEARLY * size);
         let found = rigid::outside(dual.comm(), natural, jump, wanted, lambda);
@@ -140,8 +143,9 @@ pub fn pushed_away(
         return Ok(());
     }
     let who = moving(problem, &dual.natural.columns, rest);
+    let way = dual.natural.way(problem, &dual.stiffness, rest);
     Err(Error::input(format!(
-        "{who} pushed away for ever: the load does not balance and no Dirichlet side, tie, \
+        "{who} pushed away for ever{way}: the load does not balance and no Dirichlet side, tie, \
          contact or obstacle stands against it (resultant {left:.6e} in the direction of the motion), \
          expected a support on that side"
     )))

@@ -93,7 +93,7 @@ pub fn restore(
             .zip(&offers)
             .filter(|(_, offer)| offer.is_none())
         {
-            let ([work, _], square) = (load_along.work(&d.motion), d.motion.square());
+            let ([work, ..], square) = (load_along.work(&d.motion), d.motion.square());
             rest = rest.plus(work / square, &d.motion);
             unopposed.push(d.number);
         }
@@ -217,8 +217,7 @@ impl Free {
 
     /// The work of the load on a motion; `None` if it is rounding.
     fn gain(&self, m: usize, load: &Along) -> Option<f64> {
-        let [work, size] = load.work(&self.motions[m]);
-        (work.abs() > BALANCE * size).then_some(work)
+        load.driving(&self.motions[m], BALANCE)
     }
 
     fn driven(&self, load: &Along) -> Vec<Driven> {

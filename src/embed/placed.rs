@@ -133,6 +133,7 @@ impl Placed {
             kind: self.kind,
             holds: true,
             block: self.block.into(),
+            rounding: 0.0,
             label: RowLabel::new(source, [first, second]),
         }
     }

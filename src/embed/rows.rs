@@ -28,6 +28,7 @@ pub fn rows(
         kind: RowKind::Equality,
         holds: true,
         block: u64::from(contact.block(dof).unwrap_or(dof)),
+        rounding: 0.0,
         label: RowLabel::new(
             RowSource::Interface(dof as usize),
             [a, b].map(|body| {

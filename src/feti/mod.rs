@@ -26,6 +26,7 @@ pub(crate) use krylov::recovery::LinearSolution;
 pub use krylov::tally::Communication;
 pub(crate) use method::LinearMethod;
 pub use method::Numbers;
+pub use projector::freedom::FreeMotion;
 pub use settings::{
     Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
     Scaling,

@@ -29,6 +29,9 @@ pub struct CellMesh {
     pub points: Vec<[f64; 3]>,
     /// The number of every node in its file.
     pub node_ids: Vec<u64>,
+    /// The length that one unit in the last digit of a coordinate stands for; 0 where they are exact. Directions that
+    /// follow from positions are known to this length divided by that of an edge.
+    pub resolution: f64,
     /// The cells.
     pub cells: Cells,
     /// The number of every cell in its file.
@@ -67,6 +70,7 @@ impl CellMesh {
         CellMesh {
             dim,
             node_ids: (1..=points.len() as u64).collect(),
+            resolution: 0.0,
             cell_ids: (1..=cells.len() as u64).collect(),
             points,
             cells,

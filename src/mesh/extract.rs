@@ -169,6 +169,7 @@ impl<F: Borrow<MeshFile>> Extractor<F> {
         let mut mesh = CellMesh::new(self.dim, points, cells, groups, skin);
         mesh.node_ids = own.iter().map(|&k| file.node_ids[k as usize]).collect();
         mesh.cell_ids = cell_ids;
+        mesh.resolution = scale.abs() * file.resolution;
         mesh.adjacency = Some(Arc::new(adjacency));
         Ok(mesh)
     }

@@ -60,6 +60,9 @@ pub struct MeshFile {
     pub points: Vec<[f64; 3]>,
     /// The number of each point in the file.
     pub node_ids: Vec<u64>,
+    /// The length that one unit in the last digit of a coordinate stands for, as the file writes them; 0 where they
+    /// are exact.
+    pub resolution: f64,
     /// All cells, of every dimension; nodes are places in `points`.
     pub cells: Cells,
     /// The number of each cell in the file.

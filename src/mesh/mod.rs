@@ -9,6 +9,7 @@ pub mod deck;
 mod defects;
 #[cfg(feature = "cli")]
 pub(crate) mod delaunay;
+mod digits;
 mod extract;
 mod file;
 pub mod gmsh;
@@ -25,6 +26,7 @@ pub use cell_mesh::{CellMesh, SideGroup, SKIN};
 pub use cells::Cells;
 pub use congruent::{congruent, Outline};
 pub use defects::{defects, Defect};
+pub(crate) use digits::Digits;
 pub use extract::Extractor;
 pub(crate) use file::{bytes, text, FARTHEST};
 pub use file::{Group, Members, MeshFile};

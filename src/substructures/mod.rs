@@ -99,6 +99,7 @@ pub struct Entity {
 ///     kind,
 ///     holds: true,
 ///     block,                    // rows that share a dof have the same block
+///     rounding: 0.0,            // directions are exact
 ///     label: RowLabel::new(source, [Some(BodyNode { body: 1, node: 0 }), None]),
 /// };
 /// let problem = Substructures {

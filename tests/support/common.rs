@@ -172,6 +172,7 @@ impl Grid {
                             kind: RowKind::Equality,
                             holds,
                             block: (y * (n + 1) + x) as u64,
+                            rounding: 0.0,
                             label: RowLabel::new(RowSource::Interface(0), [None; 2]),
                         });
                     }

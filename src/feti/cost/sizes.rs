@@ -8,6 +8,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::interface::{entities, location};
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::kernel;
+use crate::feti::projector::freedom::{free_motions, FreeMotion};
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
 use crate::feti::subdomain::equal;
 use crate::feti::subdomain::which::OperatorForm;
@@ -37,6 +38,8 @@ pub struct Sizes {
     pub largest_interface: usize,
     /// Dimension of every body's kernel.
     pub defect: Vec<usize>,
+    /// The motions that no candidate row holds.
+    pub free: Vec<FreeMotion>,
     /// Number of different subdomains, counted once per rank.
     pub kinds: usize,
     /// Number of these kinds with S and T as sparse solves.
@@ -118,7 +121,9 @@ impl Sizes {
         sums[3] = contact.filter(|&r| jump.inequality[r]).count() as f64;
         sum_all(comm, &mut sums);
         sum_all(comm, &mut primal);
+        let kernels = kernels(comm, problem);
         Ok(Sizes {
+            free: free_motions(comm, problem, &jump, &kernels),
             multipliers_local: jump.n_local,
             multipliers_global: jump.n_global - jump.n_local,
             multipliers_active: sums[2] as usize,
@@ -126,7 +131,7 @@ impl Sizes {
             primal: primal.iter().sum::<f64>() as usize,
             largest_primal: primal.iter().fold(0.0f64, |a, &b| a.max(b)) as usize,
             largest_interface: highest(comm, largest) as usize,
-            defect: defects(comm, problem),
+            defect: kernels.iter().map(|kernel| kernel.cols).collect(),
             kinds: sums[4] as usize,
             implicit_kinds: sums[5] as usize,
             preconditioner,
@@ -136,8 +141,8 @@ impl Sizes {
     }
 }
 
-/// Dimension of every body's kernel, from its matrices and near-kernels; a body without near-kernel counts as held.
-fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
+/// Every body's kernel as combinations of its candidates, from its matrices; a body without candidates counts as held.
+fn kernels(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<Dense> {
     let mut words = Vec::new();
     for sub in &problem.local {
         let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
@@ -158,6 +163,6 @@ fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
         });
         rest = tail;
     }
-    let defect = |f: &Vec<Dense>| kernel::null_combinations(f).cols;
-    factors.iter().map(defect).collect()
+    let kernel = |f: &Vec<Dense>| kernel::null_combinations(f);
+    factors.iter().map(kernel).collect()
 }

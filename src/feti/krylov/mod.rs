@@ -15,6 +15,7 @@ pub mod recovery;
 mod recycling;
 pub mod refinement;
 pub mod residual;
+mod rest;
 pub(super) mod shells;
 pub mod solve;
 pub mod system;

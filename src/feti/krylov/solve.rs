@@ -286,7 +286,7 @@ impl LinearMethod {
         let dual = self.dual();
         let loads = Loads::new(&self.problem, &dual);
         let natural = &dual.natural;
-        natural.check_held(dual.comm(), &self.problem, &loads.kernel)?;
+        natural.check_held(&self.problem, &dual.stiffness, &loads.kernel)?;
         let at = Iterate::new(&dual, loads)?;
         at.begin(&dual)?;
         Ok(at)

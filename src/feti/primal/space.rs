@@ -30,6 +30,9 @@ pub struct OwnedBody {
     pub range: Range<usize>,
     /// Basis of the kernel at the primal dofs, n × defect.
     pub z: Dense,
+    /// Its columns as combinations of the candidates of [`Subdomain::near_kernel`](crate::Subdomain), k × defect;
+    /// empty if these are not known.
+    pub combinations: Dense,
     /// Primal dofs of the body (indices in 0..n) that are held to make S_Π regular; as many as the defect.
     pub fixing: Vec<usize>,
 }
@@ -133,6 +136,7 @@ impl PrimalSpace {
                 body: (group[0].0 >> 2) as usize,
                 range: start..start + group.len(),
                 z: Dense::default(),
+                combinations: Dense::default(),
                 fixing: Vec::new(),
             });
             start += group.len();
@@ -220,7 +224,8 @@ impl PrimalSpace {
             let of = |messages: &BTreeMap<usize, Vec<u64>>| {
                 messages.get(&body.body).cloned().unwrap_or_default()
             };
-            body.z = self.kernel_of(body, &of(&factors), &of(&values), stiffness);
+            (body.z, body.combinations) =
+                self.kernel_of(body, &of(&factors), &of(&values), stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
             let n = body.range.len() as f64;
             // Any positive number makes S_Π regular; the mean diagonal entry keeps its condition. If nothing but the
@@ -275,13 +280,14 @@ impl PrimalSpace {
         out
     }
 
+    /// The kernel of a body at its primal dofs, and its columns as combinations of the candidates.
     fn kernel_of(
         &self,
         body: &OwnedBody,
         factors: &[u64],
         values: &[u64],
         stiffness: f64,
-    ) -> Dense {
+    ) -> (Dense, Dense) {
         let n = body.range.len();
         let mut mine = Vec::new();
         let mut known = true;
@@ -299,7 +305,7 @@ impl PrimalSpace {
         }
         if !known {
             let s_pi = self.matrix.dense(&body.range);
-            return kernel::null_space(&s_pi, stiffness);
+            return (kernel::null_space(&s_pi, stiffness), Dense::default());
         }
         let combinations = kernel::null_combinations(&mine);
         let mut z = Dense::zeros(n, combinations.cols);
@@ -316,7 +322,7 @@ impl PrimalSpace {
             }
             rest = tail;
         }
-        z
+        (z, combinations)
     }
 
     fn share_kernels(&mut self, comm: &SimpleCommunicator, asked: &[Vec<u32>]) {

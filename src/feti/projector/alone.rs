@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::known::Known;
 use super::motion::{Motion, NOTHING_SOLVED};
+use super::noise::weak_columns;
 use super::pattern::Pattern;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
@@ -14,13 +15,13 @@ use crate::linalg::semidefinite::Semidefinite;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, gather_all};
 
-/// The motions of single bodies that nothing holds, each with the name of the column that is left out for it. `a` has a
-/// unit diagonal. The rank that has the first column of a body looks at it. Collective.
+/// The motions of single bodies that nothing holds, or nothing but rounding of the input, each with the name of the
+/// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale. The rank that has the first column of a body looks at it. Collective.
 pub(super) fn alone(
     (pattern, known): (&Pattern, &Known),
     team: &Team,
     a: &Csr,
-    scale: &[f64],
+    (scale, noise): (&[f64], &[f64]),
 ) -> Vec<(u32, Motion)> {
     let bodies = bodies_here(pattern, team);
     let elsewhere = rows_of_others((pattern, known), team, a, &bodies);
@@ -37,11 +38,27 @@ pub(super) fn alone(
                 None => a.get(first + i, first + j),
             }
         });
-        let factor = Semidefinite::new(&block);
+        let noise = noise.get(first).copied().unwrap_or(0.0);
+        let unscaled = |i: usize, j: usize| block.get(i, j) / (scale[first + i] * scale[first + j]);
+        let weak = weak_columns(&Dense::from_fn(block.rows, block.cols, unscaled), noise);
+        let mut strong = block.clone();
+        for &k in &weak {
+            for i in 0..block.rows {
+                strong.set(i, k, 0.0);
+                strong.set(k, i, 0.0);
+            }
+        }
+        let factor = Semidefinite::new(&strong);
         for k in factor.dropped() {
             let v = null_vector(&block, &factor, k);
+            // The scale of a column that is rounding is vast.
+            let unit = if weak.contains(&k) {
+                scale[first + k]
+            } else {
+                1.0
+            };
             let entries = (columns.clone()).zip(&v);
-            let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
+            let entries = entries.map(|(c, v)| (c as u32, v * scale[c] / unit));
             let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
             let name = |c: u32| u64::from(known.name(c));
             words.extend([name((first + k) as u32), motion.len() as u64]);

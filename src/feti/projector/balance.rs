@@ -23,6 +23,9 @@ pub struct KernelLoad {
     pub e: Vec<f64>,
     /// For each entry of e the largest |R| times Σ|f|. Loads inside a subdomain may cancel before they reach g.
     pub size: Vec<f64>,
+    /// For each entry of e what rounding of the input may do: the size times the angle to which directions on the body
+    /// are known. Zero, or empty, where they are exact.
+    pub rounding: Vec<f64>,
     /// The largest of all sizes.
     pub largest: f64,
 }
@@ -30,8 +33,14 @@ pub struct KernelLoad {
 impl KernelLoad {
     /// Its entries at the columns of motions. The same on every rank. Collective.
     pub fn along(&self, comm: &SimpleCommunicator, known: &Known, motions: &[Motion]) -> Along {
-        let (names, [e, size]) = known.at(comm, motions, [&self.e, &self.size]);
-        Along { names, e, size }
+        let vectors = [&self.e[..], &self.size, &self.rounding];
+        let (names, [e, size, rounding]) = known.at(comm, motions, vectors);
+        Along {
+            names,
+            e,
+            size,
+            rounding,
+        }
     }
 }
 
@@ -42,15 +51,23 @@ pub struct Along {
     names: Vec<u32>,
     e: Vec<f64>,
     size: Vec<f64>,
+    rounding: Vec<f64>,
 }
 
 impl Along {
-    /// The work on a motion, and the size of the terms that may cancel in it.
+    /// The work on a motion, if it is no rounding: more than this part of the terms that may cancel in it, and than what
+    /// the digits of the input leave open.
+    pub fn driving(&self, motion: &Motion, part: f64) -> Option<f64> {
+        let [work, size, rounding] = self.work(motion);
+        (work.abs() > (part * size).max(rounding)).then_some(work)
+    }
+
+    /// The work on a motion, the size of the terms that may cancel in it, and what rounding of the input may do.
     ///
     /// # Panics
     /// If it has other columns.
-    pub fn work(&self, motion: &Motion) -> [f64; 2] {
-        let mut sums = [0.0; 2];
+    pub fn work(&self, motion: &Motion) -> [f64; 3] {
+        let mut sums = [0.0; 3];
         for (c, v) in &motion.0 {
             let at = self
                 .names
@@ -58,6 +75,7 @@ impl Along {
                 .expect("a column that was asked for");
             sums[0] += v * self.e[at];
             sums[1] += (v * self.size[at]).abs();
+            sums[2] += (v * self.rounding[at]).abs();
         }
         sums
     }
@@ -86,7 +104,20 @@ impl NaturalCoarse {
         known.sum(comm, &mut e);
         known.sum(comm, &mut size);
         let largest = known.largest(comm, &size);
-        KernelLoad { e, size, largest }
+        let rounding = match self.noise.is_empty() {
+            true => vec![0.0; size.len()],
+            false => size
+                .iter()
+                .zip(&self.noise)
+                .map(|(s, n)| s * n.sqrt())
+                .collect(),
+        };
+        KernelLoad {
+            e,
+            size,
+            rounding,
+            largest,
+        }
     }
 
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.

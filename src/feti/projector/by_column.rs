@@ -31,13 +31,16 @@ impl ByColumn {
         }
     }
 
+    /// The coefficients of motions in a column: (motion, coefficient), by increasing motion.
+    pub fn at(&self, column: u32) -> &[(u32, f64)] {
+        &self.entries[self.start[column as usize]..self.start[column as usize + 1]]
+    }
+
     /// The work of a row of G on each motion that it touches, by increasing number of the motion.
     pub fn works(&self, columns: &[u32], values: &[f64]) -> Vec<(usize, f64)> {
         let mut out: Vec<(usize, f64)> = Vec::new();
         for (&c, g) in columns.iter().zip(values) {
-            for &(m, v) in &self.entries[self.start[c as usize]..self.start[c as usize + 1]] {
-                out.push((m as usize, g * v));
-            }
+            out.extend(self.at(c).iter().map(|&(m, v)| (m as usize, g * v)));
         }
         out.sort_by_key(|e| e.0);
         out.chunk_by(|a, b| a.0 == b.0)

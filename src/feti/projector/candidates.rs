@@ -3,9 +3,12 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::columns::KernelColumns;
 use super::natural::NaturalCoarse;
 use super::rows::{RowEntry, Rows};
+use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
+use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange, max_all};
 use crate::parallel::owners::Owners;
 use crate::substructures::Substructures;
@@ -16,48 +19,64 @@ const STILL: f64 = 1e-12;
 impl NaturalCoarse {
     /// Assembles [`all`](Self::all), with the names of columns. Collective.
     pub(super) fn all_rows(&self, problem: &Substructures, stiffness: &Stiffness) -> Rows {
-        let (comm, jump) = (stiffness.comm(), &stiffness.jump);
-        let owners = Owners::new(comm, jump.first);
-        let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
-        let largest = self.largest(comm, problem);
-        for (j, kernel) in self.kernels.iter().enumerate() {
-            let columns = jump.columns.of(j);
-            for &(e, full) in columns.contact {
-                let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
-                let row = jump.ghosts[ghost as usize];
-                let to = owners.of(row);
-                for c in 0..kernel.cols {
-                    let col = self.columns.of(problem.local[j].body).start + c;
-                    let value = kernel.get(at as usize, c);
-                    // A body that cannot move along a row's normal moves there by rounding, and the row would seem to
-                    // hold it.
-                    if value.abs() > STILL * largest[col] {
-                        outgoing[to].push(RowEntry {
-                            row,
-                            col: col as u32,
-                            value: full * value,
-                        });
-                    }
+        let kernels = (&self.columns, &self.kernels[..]);
+        rows_of_bodies(stiffness.comm(), problem, &stiffness.jump, kernels)
+    }
+}
+
+/// B R with the names of columns. `kernels` has R of each local subdomain where `jump` has the places of its entries.
+/// Collective.
+pub(super) fn rows_of_bodies(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    jump: &Jump,
+    (columns, kernels): (&KernelColumns, &[Dense]),
+) -> Rows {
+    let owners = Owners::new(comm, jump.first);
+    let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
+    let largest = largest(comm, problem, columns, kernels);
+    for (j, kernel) in kernels.iter().enumerate() {
+        let entries = jump.columns.of(j);
+        for &(e, full) in entries.contact {
+            let (ghost, at) = (entries.row[e as usize], entries.at[e as usize]);
+            let row = jump.ghosts[ghost as usize];
+            let to = owners.of(row);
+            for c in 0..kernel.cols {
+                let col = columns.of(problem.local[j].body).start + c;
+                let value = kernel.get(at as usize, c);
+                // A body that cannot move along a row's normal moves there by rounding, and the row would seem to
+                // hold it.
+                if value.abs() > STILL * largest[col] {
+                    outgoing[to].push(RowEntry {
+                        row,
+                        col: col as u32,
+                        value: full * value,
+                    });
                 }
             }
         }
-        let entries = exchange(comm, outgoing);
-        let first = jump.first as u32;
-        let entries = entries.iter().map(|e| (e.row - first, e.col, e.value));
-        Rows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
     }
+    let entries = exchange(comm, outgoing);
+    let first = jump.first as u32;
+    let entries = entries.iter().map(|e| (e.row - first, e.col, e.value));
+    Rows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
+}
 
-    /// The largest entry of each column of R. Collective.
-    fn largest(&self, comm: &SimpleCommunicator, problem: &Substructures) -> Vec<f64> {
-        let mut largest = vec![0.0_f64; self.r];
-        for (kernel, sub) in self.kernels.iter().zip(&problem.local) {
-            let first = self.columns.of(sub.body).start;
-            for c in 0..kernel.cols {
-                let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
-                largest[first + c] = largest[first + c].max(size);
-            }
+/// The largest entry of each column of R. Collective.
+fn largest(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    columns: &KernelColumns,
+    kernels: &[Dense],
+) -> Vec<f64> {
+    let mut largest = vec![0.0_f64; columns.n()];
+    for (kernel, sub) in kernels.iter().zip(&problem.local) {
+        let first = columns.of(sub.body).start;
+        for c in 0..kernel.cols {
+            let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
+            largest[first + c] = largest[first + c].max(size);
         }
-        max_all(comm, &mut largest);
-        largest
     }
+    max_all(comm, &mut largest);
+    largest
 }

@@ -63,7 +63,7 @@ impl NaturalCoarse {
             let mut numbers = self.numbers.borrow_mut();
             let product = numbers.renewed(comm, shape, &self.all, chosen);
             let gram = clock::timed(Phase::NaturalFactor, || {
-                Gram::without(shape, product, &hidden)
+                Gram::without(shape, product, (&hidden, &self.noise))
             });
             let Some((column, motion)) = gram.weakest().filter(|_| hidden.len() < MOST_HIDDEN)
             else {

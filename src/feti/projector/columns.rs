@@ -38,6 +38,14 @@ impl KernelColumns {
         KernelColumns { start, home }
     }
 
+    /// Columns of bodies whose kernels have these dimensions; no rank owns any.
+    pub fn of_defects(defects: impl Iterator<Item = usize>) -> KernelColumns {
+        let mut start = vec![0];
+        defects.for_each(|d| start.push(start[start.len() - 1] + d));
+        let home = vec![0; start.len() - 1];
+        KernelColumns { start, home }
+    }
+
     /// The columns of a body: as many as its kernel has dimensions.
     pub fn of(&self, body: usize) -> Range<usize> {
         self.start[body]..self.start[body + 1]

@@ -10,6 +10,7 @@ use std::rc::Rc;
 use super::alone::{alone, null_vector};
 use super::known::Known;
 use super::motion::{Motion, NOTHING, NOTHING_SOLVED};
+use super::noise::weak_columns;
 use super::raised::Raised;
 use super::shape::Shape;
 use crate::cholesky::shared::SharedCholesky;
@@ -60,19 +61,20 @@ impl Gram {
     /// Factors `a`, a GᵀG of this shape. A rank needs the rows that it has in the factor, and all of few columns.
     /// Collective.
     pub fn new(shape: &Shape, a: Csr) -> Gram {
-        Gram::without(shape, a, &[])
+        Gram::without(shape, a, (&[], &[]))
     }
 
     /// The same, without these columns (by their names) as well, each of which depends on the others though its pivot
-    /// does not show it. They are many. Collective.
-    pub fn without(shape: &Shape, a: Csr, hidden: &[u32]) -> Gram {
+    /// does not show it, if they are many. Single bodies are free to move where the rows do no more than `noise`, given
+    /// for each column of their body; it is empty where directions are exact. Collective.
+    pub fn without(shape: &Shape, a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
         match shape.team() {
-            None => Gram::few(shape, &a),
-            Some(team) => Gram::many(shape, team, a, hidden),
+            None => Gram::few(shape, &a, noise),
+            Some(team) => Gram::many(shape, team, a, (hidden, noise)),
         }
     }
 
-    fn few(shape: &Shape, a: &Csr) -> Gram {
+    fn few(shape: &Shape, a: &Csr, noise: &[f64]) -> Gram {
         let mut dense = Dense::zeros(a.n(), a.n());
         for i in 0..a.n() {
             let (col, val) = a.row(i);
@@ -80,7 +82,7 @@ impl Gram {
                 dense.set(i, j as usize, v);
             }
         }
-        let factor = Semidefinite::new(&dense);
+        let factor = Semidefinite::new(&without_weak(shape, &dense, noise));
         let dropped = factor.dropped();
         let vector = |&k: &usize| {
             let v = null_vector(&dense, &factor, k);
@@ -95,11 +97,11 @@ impl Gram {
         }
     }
 
-    fn many(shape: &Shape, team: &Rc<Team>, mut a: Csr, hidden: &[u32]) -> Gram {
+    fn many(shape: &Shape, team: &Rc<Team>, mut a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
         let known = &shape.known;
         let mut scale = scale_own_rows(shape, team, &mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
-        let mut alone = alone((&shape.pattern, known), team, &a, &scale);
+        let mut alone = alone((&shape.pattern, known), team, &a, (&scale, noise));
         let minus = hidden.iter().map(|&k| minus_column(known, team, &a, k));
         let minus: Vec<Vec<f64>> = minus.collect();
         for k in alone.iter().map(|m| &m.0).chain(hidden) {
@@ -215,6 +217,25 @@ impl Gram {
     pub fn is_sparse(&self) -> bool {
         !matches!(self.factor, Factor::Dense(_))
     }
+}
+
+/// Few columns without those of single bodies that are best left out: their motions count as free.
+fn without_weak(shape: &Shape, a: &Dense, noise: &[f64]) -> Dense {
+    let mut out = a.clone();
+    if noise.is_empty() {
+        return out;
+    }
+    for columns in (0..shape.pattern.n_bodies()).map(|b| shape.pattern.columns(b)) {
+        let (first, n) = (columns.start, columns.len());
+        let block = Dense::from_fn(n, n, |i, j| a.get(first + i, first + j));
+        for k in weak_columns(&block, noise.get(first).copied().unwrap_or(0.0)) {
+            for i in 0..a.rows {
+                out.set(i, first + k, 0.0);
+                out.set(first + k, i, 0.0);
+            }
+        }
+    }
+    out
 }
 
 /// x ← A⁺ x for the scaled matrix of this factor. Collective.

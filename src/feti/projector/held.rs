@@ -1,11 +1,10 @@
 //! Motions of bodies that no row opposes, and the sentence about them.
 
-use mpi::topology::SimpleCommunicator;
-
 use super::balance::KernelLoad;
 use super::columns::KernelColumns;
 use super::motion::Motion;
 use super::natural::NaturalCoarse;
+use crate::feti::operators::stiffness::Stiffness;
 use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
@@ -15,22 +14,41 @@ impl NaturalCoarse {
     /// Collective.
     pub fn check_held(
         &self,
-        comm: &SimpleCommunicator,
         problem: &Substructures,
+        stiffness: &Stiffness,
         load: &KernelLoad,
     ) -> Result<()> {
+        let comm = stiffness.comm();
         let along = load.along(comm, self.known(), self.unheld());
         for motion in self.unheld() {
-            let [work, scale] = along.work(motion);
-            if work.abs() > 1e-10 * scale {
+            if along.driving(motion, 1e-10).is_some() {
                 let who = moving(problem, &self.columns, motion);
+                let way = self.way(problem, stiffness, motion);
                 return Err(Error::input(format!(
-                    "{who} held by nothing (no Dirichlet side and no tie to a held body) \
+                    "{who} held by nothing{way} (no Dirichlet side and no tie to a held body) \
                      and the load does not balance, expected a Dirichlet side or a tie"
                 )));
             }
         }
         Ok(())
+    }
+
+    /// A driven motion in words, to follow what is said of its bodies: " where it slides along x". Empty where one is
+    /// free altogether, or several do not move as one. Collective.
+    pub fn way(&self, problem: &Substructures, stiffness: &Stiffness, motion: &Motion) -> String {
+        let comm = stiffness.comm();
+        let bodies = distinct(motion.0.iter().map(|e| self.columns.body(e.0) as usize));
+        // Other free motions of the same bodies belong to the name of this one.
+        let mut free = self.free_motions(comm, problem, stiffness);
+        free.retain(|f| f.bodies == bodies);
+        if free.is_empty() {
+            free = self.named(comm, problem, stiffness, std::slice::from_ref(motion));
+        }
+        match free.iter().find(|f| f.is_one()) {
+            Some(free) if bodies.len() == 1 => format!(" where it {}", free.words),
+            Some(free) => format!(" where they {}", free.words),
+            None => String::new(),
+        }
     }
 
     /// Combinations of kernel vectors on which all rows vanish.

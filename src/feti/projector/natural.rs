@@ -20,6 +20,7 @@ use super::gram::Gram;
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::known::Known;
+use super::noise::rounding_of_rows;
 use super::numbers::Numbers;
 use super::pattern::meeting;
 use super::rows::Rows;
@@ -77,6 +78,8 @@ pub struct NaturalCoarse {
     pub(super) last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// The numbers of the last GᵀG that was factored.
     pub(super) numbers: RefCell<Numbers>,
+    /// What rounding of the input leaves of the work of rows, by column (`noise`).
+    pub(super) noise: Vec<f64>,
     /// G on the owned rows.
     pub g: Rows,
     /// Q G where it differs from G.
@@ -130,6 +133,7 @@ impl NaturalCoarse {
             way: RefCell::new(None),
             last: RefCell::new(None),
             numbers: RefCell::default(),
+            noise: Vec::new(),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
             mended: false,
@@ -196,6 +200,8 @@ impl NaturalCoarse {
         self.last = RefCell::default();
         self.numbers = RefCell::default();
         self.way = RefCell::default();
+        let shape = self.shape.as_ref().expect("it was set");
+        self.noise = rounding_of_rows(comm, problem, &stiffness.jump, (&self.all, shape));
         Ok(())
     }
 
@@ -238,7 +244,9 @@ impl NaturalCoarse {
         if self.r == 0 {
             return Ok(());
         }
-        self.g = self.assemble_g(stiffness);
+        let (session, comm) = (&stiffness.session, stiffness.comm());
+        let gram = self.gram(comm, &stiffness.jump.active);
+        self.g = self.without_noise(self.assemble_g(stiffness), &gram);
         self.qg = match self.projector {
             ProjectorKind::Diagonal => {
                 let mut qg = self.g.clone();
@@ -251,8 +259,6 @@ impl NaturalCoarse {
             }
             _ => None,
         };
-        let (session, comm) = (&stiffness.session, stiffness.comm());
-        let gram = self.gram(comm, &stiffness.jump.active);
         let (g, qg, start) = (&self.g, self.qg(), self.columns.start());
         let shape = match self.projector {
             // Q reaches the rows of neighbours.

@@ -5,10 +5,15 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
+use super::by_column::ByColumn;
 use super::known::Known;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::{sum_all, Record};
+
+/// An entry of which no more than this part is left was along the motions as a whole.
+const ALL: f64 = 1e-3;
 
 /// An entry on its way to the rank that owns its row.
 #[derive(Debug, Clone, Copy)]
@@ -284,6 +289,44 @@ impl Rows {
                 lambda[i as usize] += alpha * sum;
             }
         }
+    }
+
+    /// Each row without its part along these motions, in the columns that it has: row ← row − V (VᵀV)⁺ Vᵀ row.
+    #[must_use]
+    pub fn across(mut self, motions: &ByColumn) -> Rows {
+        for i in 0..self.n() {
+            let (at, group) = self.layout.row[i];
+            let columns = self.layout.columns_of(group as usize);
+            let row = &mut self.values[at..at + columns.len()];
+            let works = motions.works(columns, row);
+            if works.iter().all(|w| w.1 == 0.0) {
+                continue;
+            }
+            let place = |m: u32| works.partition_point(|w| w.0 < m as usize);
+            let mut v = Dense::zeros(columns.len(), works.len());
+            for (k, &c) in columns.iter().enumerate() {
+                motions
+                    .at(c)
+                    .iter()
+                    .for_each(|&(m, x)| v.set(k, place(m), x));
+            }
+            let gram = Dense::from_fn(works.len(), works.len(), |p, q| {
+                v.col(p).iter().zip(v.col(q)).map(|(a, b)| a * b).sum()
+            });
+            let mut along: Vec<f64> = works.iter().map(|w| w.1).collect();
+            Semidefinite::new(&gram).solve(&mut along);
+            let before = row.to_vec();
+            for (p, z) in along.iter().enumerate() {
+                row.iter_mut().zip(v.col(p)).for_each(|(g, x)| *g -= z * x);
+            }
+            // What is left of an entry that was nothing else is rounding, and scaling by the diagonal would magnify it.
+            for (g, was) in row.iter_mut().zip(before) {
+                if g.abs() <= ALL * was.abs() {
+                    *g = 0.0;
+                }
+            }
+        }
+        self
     }
 
     /// Row i ← q_i · row i.

@@ -28,6 +28,8 @@ pub struct Deck {
     pub node_transform: Vec<(u32, u32)>,
     /// The equations, those of *MPC among them.
     pub equations: Vec<Equation>,
+    /// One unit in the last digit of the factors of equations, as the deck writes them; 0 where they are exact.
+    pub factor_resolution: f64,
     /// The ties.
     pub ties: Vec<Tie>,
     /// The contact pairs.

@@ -123,6 +123,7 @@ impl Parts {
             name: name.to_string(),
             points: nodes.points,
             node_ids: nodes.ids,
+            resolution: scan.digits.resolution(),
             cells: elements.cells,
             cell_ids: elements.ids,
             groups: groups.name(scan, &self.names)?,

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::file::FARTHEST;
+use crate::mesh::Digits;
 
 /// How numbers stand in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +28,8 @@ pub(super) struct Scan<'a> {
     bytes: &'a [u8],
     at: usize,
     encoding: Encoding,
+    /// The digits of the coordinates so far.
+    pub digits: Digits,
 }
 
 impl<'a> Scan<'a> {
@@ -36,6 +39,7 @@ impl<'a> Scan<'a> {
             bytes,
             at: 0,
             encoding: Encoding::Text,
+            digits: Digits::default(),
         }
     }
 
@@ -177,6 +181,9 @@ impl<'a> Scan<'a> {
         for (x, axis) in point.iter_mut().zip(["x", "y", "z"]) {
             let at = self.at();
             *x = self.real("a coordinate")?;
+            if self.is_text() {
+                self.digits.see(&self.bytes[at..self.at]);
+            }
             let expected = match *x {
                 x if !x.is_finite() => "which is finite".into(),
                 x if x.abs() > FARTHEST => format!("at most {FARTHEST:e} (take other units)"),

@@ -21,7 +21,8 @@ pub use compare::{
 };
 pub use plan::{PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 pub use solve::{
-    ErrorNorms, Input, Iterations, Kkt, Multipliers, NaturalCoarse, Operators, Seconds, SolveReport,
+    ErrorNorms, FreeMotion, Input, Iterations, Kkt, Multipliers, NaturalCoarse, Operators, Seconds,
+    SolveReport,
 };
 pub use spectrum::{Condition, Spectrum};
 pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};

@@ -1,6 +1,6 @@
 //! The record of `plan`.
 
-use super::Multipliers;
+use super::{FreeMotion, Multipliers};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -23,6 +23,9 @@ pub struct PlanReport {
     pub options: BTreeMap<String, String>,
     /// What of the input is left out, ignored or replaced.
     pub notes: Vec<String>,
+    /// Motions that no row holds: a load on one has no answer, and without it the place along it is arbitrary.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub free_motions: Vec<FreeMotion>,
     /// The bodies.
     pub bodies: Vec<PlannedBody>,
     /// Pairs of bodies that touch or may touch.

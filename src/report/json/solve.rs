@@ -89,6 +89,9 @@ pub struct SolveReport {
     /// What of the input is left out, ignored or replaced.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// Motions that nothing holds and no load drives: the place along them is arbitrary.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub free_motions: Vec<FreeMotion>,
     /// What makes the answer doubtful: a sentence each, on standard error, too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -282,3 +285,12 @@ pub struct Seconds {
 #[cfg(test)]
 #[path = "../../../tests/inside/report/json/solve.rs"]
 mod tests;
+
+/// A motion that nothing holds.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct FreeMotion {
+    /// The bodies that move.
+    pub bodies: Vec<String>,
+    /// What they do, such as "slides along x".
+    pub motion: String,
+}

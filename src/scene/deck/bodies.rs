@@ -304,6 +304,7 @@ fn supports(
             None => equations.push(EquationSpec {
                 terms: (0..dim).map(|d| (at.body, first + d, axis[d])).collect(),
                 value: support.value,
+                resolution: 0.0,
                 written: format!("{}: ", deck.files.at(support.place)),
             }),
         }

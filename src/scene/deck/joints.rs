@@ -127,6 +127,7 @@ pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSp
         out.push(EquationSpec {
             terms,
             value: 0.0,
+            resolution: deck.factor_resolution,
             written: at(deck, equation.place),
         });
     }

@@ -128,6 +128,8 @@ pub struct EquationSpec {
     pub terms: Vec<(usize, usize, f64)>,
     /// The right-hand side.
     pub value: f64,
+    /// One unit in the last digit of the factors; 0 where they are exact.
+    pub resolution: f64,
     /// Where it was written, or empty.
     pub written: String,
 }

@@ -18,6 +18,8 @@ pub struct Equation {
     pub value: f64,
     /// Σ coefficient · u of the given values, without the factors of load steps.
     pub given: f64,
+    /// One unit in the last digit of its coefficients; 0 where they are exact.
+    pub resolution: f64,
     /// Its block: rows with a degree of freedom in common have the same.
     pub block: u64,
     /// The subdomain of lowest index that has a degree of freedom of the block.
@@ -67,6 +69,7 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
             terms,
             value: spec.value,
             given,
+            resolution: spec.resolution,
             block,
             subdomain,
         });

@@ -34,6 +34,7 @@ pub mod mortar_row;
 pub mod obstacles;
 pub mod points;
 mod reach;
+mod rounding;
 pub mod select;
 pub mod surfaces;
 pub mod table;

@@ -4,6 +4,7 @@ use super::areas::Areas;
 use super::equations::Equation;
 use super::mortar_row::MortarRow;
 use super::points::{Point, PointRow};
+use super::rounding::Rounding;
 use crate::error::Result;
 use crate::scene::checked::Scene;
 use crate::scene::model::steps::Factors;
@@ -17,6 +18,7 @@ impl Scene {
     pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<InterfaceRow> {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
+        let rounding = Rounding::new(self);
         let row = |(point, row): (&Point, &PointRow)| {
             let side = |m: usize| point.members[m].along(&self.bodies, row.direction).terms;
             let [a, b] = row.members.map(|m| m.map(side).unwrap_or_default());
@@ -30,6 +32,7 @@ impl Scene {
                 },
                 holds: row.holds,
                 block: point.block,
+                rounding: rounding.of(row.members.iter().flatten().map(|&m| point.members[m].body)),
                 label: self.label(point, row, &mut areas),
             }
         };
@@ -39,6 +42,7 @@ impl Scene {
             kind: RowKind::Equality,
             holds: true,
             block: e.block,
+            rounding: rounding.of_equation(e),
             label: RowLabel::new(RowSource::Equation(k), [None; 2]),
         };
         let mortar = |m: &MortarRow| InterfaceRow {
@@ -50,6 +54,7 @@ impl Scene {
             },
             holds: true,
             block: m.block,
+            rounding: rounding.of(m.members.iter().flatten().map(|member| member.body)),
             label: self.mortar_label(m),
         };
         let mut out: Vec<InterfaceRow> = self.each_row(owns).map(row).collect();

@@ -18,6 +18,7 @@ fn rows_travel_unchanged() {
         kind: RowKind::Inequality,
         holds: true,
         block: 9,
+        rounding: 0.0,
         label,
     };
     for (kind, holds, state) in [

@@ -331,6 +331,7 @@ impl Solid {
                         kind: RowKind::Equality,
                         holds,
                         block: (i * self.components() + c) as u64,
+                        rounding: 0.0,
                         label: RowLabel::new(RowSource::Interface(0), [None; 2]),
                     });
                 }

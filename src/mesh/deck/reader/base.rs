@@ -8,7 +8,7 @@ use crate::mesh::deck::cards::{Card, Cards};
 use crate::mesh::deck::keywords::verdict;
 use crate::mesh::deck::model::Deck;
 use crate::mesh::deck::place::{Files, Note, Place};
-use crate::mesh::CellKind;
+use crate::mesh::{CellKind, Digits};
 use std::collections::HashMap;
 
 /// Entries that names in a deck may stand for beside 16 a line: sets of sets, or steps that keep everything, can say in
@@ -23,6 +23,10 @@ pub(in crate::mesh::deck) struct Reader<'a> {
     pub(super) whole: bool,
     pub(super) deck: Deck,
     pub(super) nodes: Ids,
+    /// The digits of the coordinates.
+    pub(super) digits: Digits,
+    /// The digits of the factors of equations.
+    pub(super) factor_digits: Digits,
     pub(super) cells: Ids,
     pub(super) nsets: Sets,
     pub(super) elsets: Sets,
@@ -47,6 +51,8 @@ impl<'a> Reader<'a> {
             whole,
             deck: Deck::default(),
             nodes: Ids::default(),
+            digits: Digits::default(),
+            factor_digits: Digits::default(),
             cells: Ids::default(),
             nsets: Sets::default(),
             elsets: Sets::default(),

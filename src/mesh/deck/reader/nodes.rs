@@ -31,6 +31,7 @@ impl<'a> Reader<'a> {
             let mut point = [0.0; 3];
             for (k, x) in point.iter_mut().enumerate() {
                 *x = row.real_or(self.files, k + 1, 0.0, "a coordinate")?;
+                self.digits.see(row.field(k + 1).as_bytes());
             }
             if let Some(x) = point.iter().find(|x| x.abs() > FARTHEST) {
                 let message = format!(

@@ -113,10 +113,12 @@ impl<'a> Reader<'a> {
     }
 
     /// The term that begins in field `k`: nodes, direction, factor.
-    fn term(&self, row: &Row, k: usize) -> Result<(Vec<u32>, u8, f64)> {
+    fn term(&mut self, row: &Row, k: usize) -> Result<(Vec<u32>, u8, f64)> {
         let nodes = self.target_nodes(row, k)?;
         let dof = row.whole(self.files, k + 1, "a direction")?;
         let factor = row.real(self.files, k + 2, "a factor")?;
+        self.factor_digits.see(row.field(k + 2).as_bytes());
+        self.deck.factor_resolution = self.factor_digits.resolution();
         if !(1..=self.deck.dim() as u64).contains(&dof) {
             let message = format!(
                 "the direction of a term is 1 to {}, but it is {dof}",

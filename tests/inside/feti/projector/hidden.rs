@@ -58,7 +58,7 @@ fn the_motion_of_a_column_that_is_left_out_is_found() {
                 &Sharing::any(),
             );
             let product = shape.product(comm, &g, &g, |_| true);
-            let gram = Gram::without(&shape, product, &[0]);
+            let gram = Gram::without(&shape, product, (&[0], &[]));
             assert_eq!(gram.dropped, [0]);
             let [motion] = &gram.unheld[..] else {
                 panic!("{} motions", gram.unheld.len());

@@ -171,7 +171,7 @@ fn found(
     // A column that is left out beforehand, and its motion.
     let all_rows = vec![true; g.n()];
     let product = shape.product(comm, &g, &g, |_| true);
-    let without = Gram::without(&shape, product, &[2 * (BODIES / 2)]);
+    let without = Gram::without(&shape, product, (&[2 * (BODIES / 2)], &[]));
     let [motion] = &without.unheld[..] else {
         panic!("{} motions", without.unheld.len());
     };

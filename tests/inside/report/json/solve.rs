@@ -49,6 +49,8 @@ fn report() -> SolveReport {
         contact: None,
         error: None,
         notes: Vec::new(),
+        free_motions: Vec::new(),
+        warnings: Vec::new(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: None,
