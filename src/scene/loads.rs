@@ -1,5 +1,6 @@
 //! Loads of a subdomain, step by step.
 
+use super::body::Body;
 use super::checked::Scene;
 use super::coefficient::evaluate;
 use super::meshes::side_part;
@@ -96,6 +97,17 @@ impl<'a> Stepping<'a> {
     }
 }
 
+/// Whether a subdomain has a degree of freedom with a given value that is not zero.
+fn is_moved(body: &Body, inside: usize) -> bool {
+    if body.prescribed.iter().all(|(_, u)| *u == 0.0) {
+        return false;
+    }
+    let c = body.components;
+    let given = |dof: usize| body.prescribed_at(dof).is_some_and(|u| u != 0.0);
+    let mut nodes = body.mesh().subdomain_nodes(inside).into_iter();
+    nodes.any(|node| (c * node..c * (node + 1)).any(given))
+}
+
 /// The values of loads by cell, where all are.
 fn by_cell(fields: &[Field]) -> Option<[Option<&[f64]>; 3]> {
     let mut out = [None; 3];
@@ -158,10 +170,8 @@ impl Scene {
         let mut energy = 0.0;
         for index in subdomains {
             let (body, inside) = self.place(index);
-            // Only subdomains beside given values need a mesh.
-            let given = |side: usize| body.spec.holds(side) && body.mesh().reaches(inside, side);
-            let beside = (0..body.mesh().n_sides()).any(given);
-            if !beside || body.prescribed.iter().all(|(_, u)| *u == 0.0) {
+            // Only subdomains with given values need a mesh: on sides, at nodes, and at nodes that are tied to these.
+            if !is_moved(body, inside) {
                 continue;
             }
             let mesh = self.mesh_with(index, factors)?;
