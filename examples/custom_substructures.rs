@@ -36,6 +36,7 @@ fn run(session: &Session) -> Result<()> {
         n_subdomains: n,
         ragged: false,
         body_names: (1..=BOARDS).map(|b| format!("board {b}")).collect(),
+        weak: Vec::new(),
         local: mine.map(half).collect(),
         // Any rank may provide any row, as long as exactly one does and rows of one block stay together.
         rows: if session.rank() == 0 {
@@ -171,6 +172,7 @@ fn half(index: usize) -> Subdomain {
         entities: Vec::new(),
         near_kernel: None,
         coordinates: None,
+        idle: Vec::new(),
     }
 }
 

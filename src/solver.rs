@@ -11,10 +11,11 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::{
     Communication, Facts, FreeMotion, LinearMethod, LinearSolution, Numbers, Spectrum,
 };
+use crate::parallel::exchange::any;
 use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::substructures::{InterfaceRow, SolvedRow, Substructures};
+use crate::substructures::{idle, InterfaceRow, SolvedRow, Substructures};
 use crate::Result;
 pub use early::{Discretisation, PART};
 
@@ -50,6 +51,8 @@ pub struct FetiFeti {
     settings: Settings,
     setup_stage: Stage,
     solve_stage: Stage,
+    /// Whether a body has motions that nothing sees.
+    idle: bool,
 }
 
 impl FetiFeti {
@@ -68,7 +71,9 @@ impl FetiFeti {
         let settings = settings.into().with_options(session)?;
         let method = LinearMethod::new(session, problem, settings.method.clone())?;
         drop(staged);
+        let idle = method.problem.local.iter().any(|s| !s.idle.is_empty());
         Ok(FetiFeti {
+            idle: any(session.comm(), idle),
             method,
             settings,
             setup_stage: stage,
@@ -95,6 +100,7 @@ impl FetiFeti {
     /// As [`FetiFeti::solve`], and those of `enough`.
     pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
+        self.check_idle()?;
         let found = self.method.solve(Some(enough))?;
         self.certified(found, Vec::new())
     }
@@ -110,6 +116,7 @@ impl FetiFeti {
         observe: &mut contact::Observer,
     ) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
+        self.check_idle()?;
         if self.facts().inequalities == 0 {
             let found = self.method.solve(None)?;
             return self.certified(self.method.at_rest(found), Vec::new());
@@ -129,8 +136,20 @@ impl FetiFeti {
         Ok(solution)
     }
 
-    /// The solution, with the rows in the order in which the problem has them.
-    fn solution(&self, found: LinearSolution, steps: Vec<Step>) -> Solution {
+    /// Returns an error if the load drives a motion that nothing sees. Collective.
+    fn check_idle(&self) -> Result<()> {
+        match self.idle {
+            true => idle::check(self.session().comm(), &self.problem().local),
+            false => Ok(()),
+        }
+    }
+
+    /// The solution, with the rows in the order in which the problem has them. Collective.
+    fn solution(&self, mut found: LinearSolution, steps: Vec<Step>) -> Solution {
+        if self.idle {
+            let comm = self.session().comm();
+            idle::settle(comm, &self.problem().local, &mut found.u);
+        }
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
         let multipliers = jump.in_given_order(&found.lambda);
@@ -191,6 +210,7 @@ impl FetiFeti {
             settings,
             setup_stage,
             solve_stage,
+            idle,
         } = self;
         let staged = setup_stage.scope()?;
         let renewed = method.renewed(numbers, rows)?;
@@ -200,6 +220,7 @@ impl FetiFeti {
             settings,
             setup_stage,
             solve_stage,
+            idle,
         }))
     }
 

@@ -16,7 +16,7 @@ use crate::mesh::contiguous_share;
 use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{Comm, Ksp, Session, Vec as PetscVec};
 use crate::scene::Scene;
-use crate::substructures::Subdomain;
+use crate::substructures::{idle, Subdomain};
 use crate::{Error, Result};
 
 /// Residual that a solution in working precision must reach. A refined solution is judged by its certificate instead.
@@ -164,6 +164,7 @@ impl<'a> Reference<'a> {
         copies: Copies,
     ) -> Result<[f64; 2]> {
         let mut values = self.values(subdomains)?;
+        idle::settle(self.session.comm(), subdomains, &mut values);
         let most = |list: &[Vec<f64>]| list.iter().flatten().fold(0.0f64, |a, v| a.max(v.abs()));
         let size = most(&values);
         for (values, u) in values.iter_mut().zip(u) {

@@ -124,6 +124,9 @@ fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     let so =
         "a load that drives this has no answer, and without one the place along it is arbitrary";
     out += &lines(&doubts::free(&doubts::recorded(scene, &sizes.free), so));
+    for warning in &scene.warnings {
+        let _ = writeln!(out, "Warning: {warning}");
+    }
     let _ = writeln!(out, "{}\n", plan.title);
     out += &bodies(&plan, sizes);
     out += &interfaces(scene, &plan);

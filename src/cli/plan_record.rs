@@ -22,6 +22,7 @@ pub(super) fn report(session: &Session, scene: &Scene, sizes: &Sizes) -> Result<
         options: record::options(session)?,
         notes: scene.notes.clone(),
         free_motions: doubts::recorded(scene, &sizes.free),
+        warnings: scene.warnings.clone(),
         bodies: bodies
             .map(|(b, &floating)| PlannedBody {
                 name: b.name.clone(),

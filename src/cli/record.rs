@@ -90,7 +90,7 @@ pub(super) fn report(
         }),
         notes: scene.notes.clone(),
         free_motions: doubts::recorded(scene, &solver.free_motions()),
-        warnings: doubts::beyond(session, scene, course),
+        warnings: [scene.warnings.clone(), doubts::beyond(session, scene, course)].concat(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: solver.communication(),

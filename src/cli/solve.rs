@@ -49,14 +49,17 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
 /// Solves the steps of a deck one after the other; each is a linear problem of its own. With several steps the results
 /// of each are in a directory of their own, and the report is that of the last.
 fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Result<()> {
+    let in_full = fits::is_in_full(session)?;
     let deck = session.agree(DeckScenes::load(&args.scene))?;
+    let deck = deck.integrated(in_full);
     on_first_rank(session, || destination.prepare())?;
     let stem = args
         .scene
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned());
     let stem = stem.unwrap_or_default();
-    on_first_rank(session, || destination.print(&lines(&deck.notes())))?;
+    let mut said = deck.notes();
+    on_first_rank(session, || destination.print(&lines(&said)))?;
     // Only rank 0 has tables.
     let mut printed = Vec::new();
     let n = deck.n_steps();
@@ -68,6 +71,11 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
         };
         let scene = session.agree(deck.scene(&title, step))?;
         distribution::same_on_all_ranks(session, &args.scene, &scene)?;
+        // What the bodies of this step add to the notes of the deck.
+        let new = |note: &&String| !said.contains(note);
+        let more: Vec<String> = scene.notes.iter().filter(new).cloned().collect();
+        on_first_rank(session, || destination.print(&lines(&more)))?;
+        said.extend(more);
         let mut of_step = destination.clone();
         if n > 1 {
             of_step.out = destination

@@ -17,7 +17,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::projector::gram::FEW;
-use crate::feti::projector::held::moving;
+use crate::feti::projector::held::{moving, weakness};
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::rows::Rows;
 use crate::linalg::dense::Dense;
@@ -144,10 +144,11 @@ pub fn pushed_away(
     }
     let who = moving(problem, &dual.natural.columns, rest);
     let way = dual.natural.way(problem, &dual.stiffness, rest);
+    let weak = weakness(problem, &dual.natural.columns, rest);
     Err(Error::input(format!(
         "{who} pushed away for ever{way}: the load does not balance and no Dirichlet side, tie, \
          contact or obstacle stands against it (resultant {left:.6e} in the direction of the motion), \
-         expected a support on that side"
+         expected a support on that side{weak}"
     )))
 }
 

@@ -193,6 +193,7 @@ impl Embedded {
             // Its ρ is the diagonal of K already.
             ragged: false,
             body_names: (0..n_bodies).map(|b| b.to_string()).collect(),
+            weak: Vec::new(),
             local: local.collect(),
             rows,
         };

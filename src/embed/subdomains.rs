@@ -38,6 +38,7 @@ pub fn subdomain(n_global: usize, part: &mut Part, shape: &Shape, known: Known) 
     };
     let number = |&dof: &u32| body_dof(n_global, body, dof);
     Subdomain {
+        idle: Vec::new(),
         index: known.index,
         body,
         f: vec![0.0; part.dofs.len()],

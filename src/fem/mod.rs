@@ -12,6 +12,7 @@ mod loads;
 mod norms;
 pub(crate) mod q1;
 pub mod recovery;
+pub(crate) mod slack;
 mod sparse;
 mod subdomain;
 

@@ -80,6 +80,7 @@ impl LinearMethod {
         let problem = Substructures {
             local: std::mem::take(&mut self.problem.local),
             body_names: std::mem::take(&mut self.problem.body_names),
+            weak: std::mem::take(&mut self.problem.weak),
             rows,
             ..self.problem
         };

@@ -4,6 +4,7 @@ pub mod csr;
 pub mod dense;
 pub mod lists;
 pub mod nnls;
+pub(crate) mod null_space;
 pub(crate) mod orthogonal;
 pub mod semidefinite;
 pub mod single;

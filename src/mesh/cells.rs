@@ -59,6 +59,11 @@ impl Cells {
         &self.nodes[self.starts[c]..self.starts[c + 1]]
     }
 
+    /// The nodes of cell `c`, to put them into another order.
+    pub(super) fn nodes_mut(&mut self, c: usize) -> &mut [u32] {
+        &mut self.nodes[self.starts[c]..self.starts[c + 1]]
+    }
+
     /// The nodes of all cells, one cell after the other.
     pub fn all_nodes(&self) -> &[u32] {
         &self.nodes

@@ -4,6 +4,7 @@ mod body;
 mod boxes;
 mod cell_mesh;
 mod cells;
+mod clockwise;
 mod congruent;
 pub mod deck;
 mod defects;

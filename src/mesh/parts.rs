@@ -65,6 +65,14 @@ impl Parts {
         }
     }
 
+    /// Makes some shared nodes, in increasing order, vertices: they leave the edges and faces that they are on.
+    pub fn make_vertices(&mut self, nodes: &[u32]) {
+        nodes.iter().for_each(|&k| self.vertex[k as usize] = true);
+        for (_, list) in &mut self.entities {
+            list.retain(|k| nodes.binary_search(k).is_err());
+        }
+    }
+
     /// Number of subdomains.
     pub fn len(&self) -> usize {
         self.nodes.len()

@@ -5,6 +5,7 @@ use super::deck::DeckScenes;
 use super::geometry::interface::mostly_tied;
 use super::geometry::matching::Matching;
 use super::geometry::{loose, overlap};
+use super::idle::body::BodySlack;
 use super::interfaces::Interfaces;
 use super::model::expr::Expr;
 use super::model::grid::GridSpec;
@@ -81,6 +82,8 @@ pub struct Scene {
     pub options: Vec<(String, String)>,
     /// What of the input is left out, ignored or replaced: a sentence each.
     pub notes: Vec<String>,
+    /// What makes the answer doubtful: a sentence each.
+    pub warnings: Vec<String>,
     /// Whether load steps could renew its contacts.
     pub(crate) renewable: bool,
     /// What load steps renew contacts from, if they do.
@@ -93,6 +96,8 @@ pub struct Scene {
     pub(super) contact_elsewhere: bool,
     /// Number of subdomains.
     n_subdomains: usize,
+    /// Motions without energy that are not rigid, of the bodies that have some.
+    pub(super) idle: Vec<BodySlack>,
 }
 
 impl Scene {
@@ -101,18 +106,19 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
-        Scene::load_if(path.as_ref(), |_| Ok(Part::WHOLE))
+        Scene::load_if(path.as_ref(), false, |_| Ok(Part::WHOLE))
     }
 
     /// [`Scene::load`] of the part that `fits` wants of what was read, unless it objects. It is asked before anything
-    /// is made from that. A deck is read as a whole.
+    /// is made from that. A deck is read as a whole; its elements may be integrated in full.
     pub(super) fn load_if(
         path: &Path,
+        in_full: bool,
         fits: impl FnOnce(&SceneSpec) -> Result<Part>,
     ) -> Result<Scene> {
         let file = path.display().to_string();
         if DeckScenes::is_deck(path) {
-            let deck = DeckScenes::load(path)?;
+            let deck = DeckScenes::load(path)?.integrated(in_full);
             return deck.scene(&read::stem(&file), deck.n_steps() - 1);
         }
         let text = text(path, "scene")?;
@@ -145,10 +151,15 @@ impl Scene {
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
         let mut cuts = cut::Cuts::default();
+        let mut slack = Vec::new();
         for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
             cut::prepare(&mut body, &spec.form, &mut cuts)?;
             axis::hold(&mut body, &spec.form)?;
+            let loose = cut::slack(&mut body, &spec.form);
+            if !loose.is_empty() {
+                slack.push((bodies.len(), loose));
+            }
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 components,
@@ -180,6 +191,8 @@ impl Scene {
         )?;
         let part = match written {
             Some(_) => Part::WHOLE,
+            // Which motions rows see follows from all rows.
+            None if !slack.is_empty() => Part::WHOLE,
             None => part.of(&spec, &interfaces, &obstacles),
         };
         let owns = part.owns(&bodies);
@@ -217,7 +230,7 @@ impl Scene {
             Part::WHOLE => interfaces.into(),
             part => part::needed(interfaces, &bodies, &points, part),
         };
-        Ok(Scene {
+        let mut scene = Scene {
             options: spec.options,
             title: spec.title,
             form: spec.form,
@@ -231,13 +244,19 @@ impl Scene {
             steps,
             exact: spec.exact,
             notes: spec.notes,
+            warnings: cuts.warnings,
             renewable: may_renew(&spec.form, &spec.contacts),
             renewal,
             mostly_tied: tied,
             is_whole: part == Part::WHOLE,
             contact_elsewhere: false,
             n_subdomains: first_subdomain,
-        })
+            idle: Vec::new(),
+        };
+        let (idle, notes) = scene.find_idle(slack);
+        scene.idle = idle;
+        scene.notes.extend(notes);
+        Ok(scene)
     }
 
     /// The experiment of Table 1 of \[Lee\]; see [`lee`].

@@ -4,8 +4,10 @@ use super::model::body::{BodySpec, Cut};
 use super::model::map::Map;
 use crate::error::{Error, Result};
 use crate::fem::cell::{Element, Material};
-use crate::fem::element::{self, Integration};
+use crate::fem::element::{self, Doubt, Integration};
+use crate::fem::slack::{self, Motion};
 use crate::fem::Form;
+use crate::linalg::sorted::distinct;
 use crate::mesh::partition::{subdomains_for, Interface, Partition, Sharing};
 use crate::mesh::{congruent, second_order, BoxMesh, CellMesh, Mesh, Outline, Parts};
 use std::collections::HashMap;
@@ -53,9 +55,16 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
         body.mesh = Mesh::Cells(done.clone());
         return Ok(());
     }
-    if let Err(message) = check(mesh, form, &body.integration) {
-        let (written, name) = (&body.written, &body.name);
-        return Err(Error::Input(format!("{written}body `{name}`: {message}")));
+    let name = &body.name;
+    match check(mesh, form, &body.integration) {
+        Err(message) => {
+            let written = &body.written;
+            return Err(Error::Input(format!("{written}body `{name}`: {message}")));
+        }
+        Ok(doubts) => {
+            let about = |doubt| format!("body `{name}`: {doubt}");
+            before.warnings.extend(doubts.map(about));
+        }
     }
     let (written, mut mesh) = (mesh.clone(), mesh.clone());
     if n > 0 {
@@ -68,6 +77,28 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     Ok(())
 }
 
+/// The motions without energy of a body's mesh beyond the rigid ones. Where subdomains share nodes that they move,
+/// these become vertices, so that no subdomain has such a motion by itself.
+pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<Motion> {
+    let Mesh::Cells(mesh) = &body.mesh else {
+        return Vec::new();
+    };
+    if body.integration.is_empty() {
+        return Vec::new();
+    }
+    let found = slack::slack(form, mesh, &body.integration, &|node| body.position(node));
+    let c = form.components(mesh.dim) as u32;
+    let moves = found.iter().flatten().map(|e| e.0 / c);
+    let shared = |k: &u32| mesh.parts.sharers(*k as usize).len() > 1;
+    let shared: Vec<u32> = distinct(moves.filter(shared));
+    if !shared.is_empty() {
+        let mut mesh = mesh.clone();
+        Arc::make_mut(&mut mesh).parts.make_vertices(&shared);
+        body.mesh = Mesh::Cells(mesh);
+    }
+    found
+}
+
 /// The meshes that are known so far.
 #[derive(Default)]
 pub(super) struct Cuts {
@@ -76,6 +107,8 @@ pub(super) struct Cuts {
     /// Meshes that copies share, by where they are in memory: as they were, and what has become of them. The number is
     /// 0 for those that stay as they are.
     copies: HashMap<(usize, usize), (Arc<CellMesh>, Arc<CellMesh>)>,
+    /// What makes their cells doubtful: a sentence each.
+    pub warnings: Vec<String>,
     /// The last box that has got elements of second order.
     of_box: Option<(BoxMesh, Option<Map>, Arc<CellMesh>)>,
 }
@@ -115,10 +148,17 @@ fn cut(mesh: &mut CellMesh, n: usize) {
     mesh.forget_adjacency();
 }
 
-/// Checks every cell: its shape, and whether the form has an element of its kind.
-fn check(mesh: &CellMesh, form: &Form, rules: &[Integration]) -> std::result::Result<(), String> {
+/// Checks every cell: its shape, and whether the form has an element of its kind. Returns a sentence on cells that are
+/// sound where they are integrated and not at their nodes, if there are any.
+fn check(
+    mesh: &CellMesh,
+    form: &Form,
+    rules: &[Integration],
+) -> std::result::Result<Option<String>, String> {
     let material: Material = form.material(1.0, 0.3);
     let mut known = None;
+    let mut worst: Option<(usize, Doubt)> = None;
+    let mut doubtful = 0;
     for c in 0..mesh.cells.len() {
         let (kind, id) = (mesh.cells.kind(c), mesh.cell_ids[c]);
         let rule = rules.get(c).copied().unwrap_or(Integration::Full);
@@ -127,8 +167,38 @@ fn check(mesh: &CellMesh, form: &Form, rules: &[Integration]) -> std::result::Re
                 .map_err(|message| format!("cell {id} is a {}: {message}", kind.name()))?;
             known = Some((kind, rule));
         }
-        element::check_jacobian(kind, mesh.dim, &mesh.cell_points(c))
+        let found = element::check_jacobian(kind, mesh.dim, &mesh.cell_points(c), rule)
             .map_err(|bad| format!("cell {id}, a {}, {bad}", kind.name()))?;
+        if let Some(doubt) = found {
+            doubtful += 1;
+            if worst.is_none_or(|(_, last)| doubt.jacobian < last.jacobian) {
+                worst = Some((c, doubt));
+            }
+        }
     }
-    Ok(())
+    Ok(worst.map(|(c, doubt)| doubts(mesh, c, doubt, doubtful)))
+}
+
+/// The sentence on `n` doubtful cells, of which `c` is the worst.
+fn doubts(mesh: &CellMesh, c: usize, doubt: Doubt, n: usize) -> String {
+    let (kind, id) = (mesh.cells.kind(c).name(), mesh.cell_ids[c]);
+    let place = match doubt.node {
+        Some(k) => {
+            let node = mesh.cells.nodes(c)[k] as usize;
+            format!("at its node {}", mesh.node_ids[node])
+        }
+        None => "near its boundary".into(),
+    };
+    let what = match doubt.jacobian {
+        j if j < 0.0 => format!("is folded {place}, where its Jacobian is {j:.2e} of its mean"),
+        _ => format!("has no volume {place}"),
+    };
+    let of = match n {
+        1 => String::new(),
+        n => format!(" (the worst of {n} such cells)"),
+    };
+    format!(
+        "cell {id}, a {kind}, {what}{of}; it is sound at all points of integration and is solved as it is, but its \
+         stresses are doubtful"
+    )
 }

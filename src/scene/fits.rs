@@ -39,7 +39,8 @@ pub(super) fn load_part(
     part: impl FnOnce(&SceneSpec) -> Result<Part>,
 ) -> Result<Scene> {
     let name = path.display().to_string();
-    Scene::load_if(path, |spec| {
+    let in_full = is_in_full(session)?;
+    Scene::load_if(path, in_full, |spec| {
         let own = spec.options.iter().find(|(key, _)| key == LIMIT);
         check(
             session,
@@ -50,6 +51,12 @@ pub(super) fn load_part(
         )?;
         part(spec)
     })
+}
+
+/// Whether the elements of decks are integrated in full. Reads the option `-fetifeti_full_integration`.
+pub(crate) fn is_in_full(session: &Session) -> Result<bool> {
+    let help = "whether all elements of a deck are integrated in full";
+    Options::new(session, "fetifeti_").bool("full_integration", false, help)
 }
 
 /// The experiment of Table 1 of \[Lee\], unless it would not fit into the memory.

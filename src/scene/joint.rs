@@ -34,6 +34,7 @@ impl Scene {
             n_subdomains: self.n_subdomains(),
             ragged: self.is_ragged(),
             body_names: self.bodies.iter().map(|b| b.spec.name.clone()).collect(),
+            weak: self.weak_bodies(),
             local: local?,
             rows: self.rows(owns),
         })
@@ -92,10 +93,16 @@ impl Scene {
                 coordinates.push(mesh.points[node]);
             }
         }
-        let near_kernel = match c {
+        let mut near_kernel = match c {
             1 => vec![vec![1.0; n]],
             _ => rigid_motions(body, mesh),
         };
+        let (mut k, mut idle) = (k, Vec::new());
+        if let Some(slack) = self.slack_of(mesh.body) {
+            k = slack.held(k, body, &dofs);
+            near_kernel = slack.near_kernel(near_kernel, body, &dofs);
+            idle = slack.parts(body, mesh, &whole.subdomain_nodes(inside));
+        }
         Ok(Subdomain {
             index: mesh.index,
             body: mesh.body,
@@ -107,6 +114,7 @@ impl Scene {
             primal,
             near_kernel: Some(near_kernel),
             coordinates: Some(coordinates),
+            idle,
         })
     }
 

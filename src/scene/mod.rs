@@ -25,6 +25,7 @@ pub(crate) mod distribution;
 #[cfg(feature = "cli")]
 pub(crate) mod fits;
 pub(crate) mod geometry;
+mod idle;
 mod interfaces;
 mod joint;
 mod loads;

@@ -43,6 +43,7 @@ impl FetiFeti {
         discretisation: &mut Discretisation,
     ) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
+        self.check_idle()?;
         let (method, settings) = (&self.method, &self.settings);
         let last = Options::new(self.session(), &settings.method.prefix).get_f64("ksp_rtol")?;
         let last = last.unwrap_or(LAST);

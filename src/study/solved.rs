@@ -1,10 +1,12 @@
 //! One scene of a study and its solution, with all contact rows on every rank.
 
+use std::path::Path;
 use std::time::Instant;
 
 use crate::feti::MethodSettings;
+use crate::mesh::{bytes, deck};
 use crate::petsc::Session;
-use crate::scene::{distribution, Numbering, Scene};
+use crate::scene::{distribution, DeckScenes, Numbering, Scene};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
 
@@ -31,7 +33,7 @@ impl Solved {
         text: &str,
         settings: &MethodSettings,
     ) -> Result<Solved> {
-        let scene = session.agree(Scene::parse(name, text))?;
+        let scene = session.agree(scene(name, text))?;
         let (solver, solution, seconds) = distribution::with_options(session, &scene, || {
             let clock = Instant::now();
             let substructures = distribution::substructures(session, &scene)?;
@@ -56,4 +58,17 @@ impl Solved {
     pub fn dofs(&self) -> usize {
         Numbering::new(&self.scene).len() as usize
     }
+}
+
+/// The scene in a text; of a deck the last step.
+///
+/// # Errors
+/// Those of a scene or a deck that cannot be read.
+pub fn scene(name: &str, text: &str) -> Result<Scene> {
+    if !DeckScenes::is_deck(Path::new(name)) {
+        return Scene::parse(name, text);
+    }
+    let included = |file: &str| bytes(Path::new(file), "deck");
+    let deck = DeckScenes::of(deck::read(name, text.as_bytes(), &included)?)?;
+    deck.scene(name, deck.n_steps() - 1)
 }

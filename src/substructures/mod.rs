@@ -3,8 +3,10 @@
 //! Scenes and MATIS matrices both become [`Substructures`]; the method does not know where the matrices come from. All
 //! data are distributed: a rank holds its own subdomains and provides its own rows.
 
+pub(crate) mod idle;
 mod rows;
 
+pub use idle::Idle;
 pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow};
 
 use std::sync::Arc;
@@ -41,6 +43,8 @@ pub struct Subdomain {
     pub near_kernel: Option<Vec<Vec<f64>>>,
     /// Position of each local dof, if known: used for nested dissection. Length n.
     pub coordinates: Option<Vec<[f64; 3]>>,
+    /// Its part of the motions of its body without energy that K holds all the same; mostly none, see [`Idle`].
+    pub idle: Vec<Idle>,
 }
 
 /// The kind of an [`Entity`], by which constraints are chosen.
@@ -87,6 +91,7 @@ pub struct Entity {
 ///     entities: Vec::new(),
 ///     near_kernel: None,        // kernels are found from the matrices
 ///     coordinates: None,
+///     idle: Vec::new(),         // no motion is held artificially
 ///     k: k.into(),
 ///     f,
 ///     dofs,
@@ -107,6 +112,7 @@ pub struct Entity {
 ///     n_subdomains: 2,
 ///     ragged: false,
 ///     body_names: vec!["fixed".into(), "free".into()],
+///     weak: Vec::new(),
 ///     local: vec![
 ///         spring(0, fixed, vec![0.0], vec![0]),
 ///         spring(1, free, vec![0.0, 1.0], vec![1, 2]),
@@ -135,6 +141,9 @@ pub struct Substructures {
     pub ragged: bool,
     /// Name of every body, for messages; length n_bodies.
     pub body_names: Vec<String>,
+    /// For messages: bodies, increasing, whose cells leave motions without energy that are not rigid, each with what is
+    /// to be said of it.
+    pub weak: Vec<(usize, String)>,
     /// This rank's subdomains, in increasing order of `index`.
     pub local: Vec<Subdomain>,
     /// The rows that this rank provides. Each row of the problem is provided by exactly one rank.
@@ -142,6 +151,15 @@ pub struct Substructures {
 }
 
 impl Substructures {
+    /// What is to be said of the cells of the first of some bodies with motions without energy, behind a sentence; or
+    /// nothing.
+    pub(crate) fn weakness(&self, bodies: &[u32]) -> String {
+        let of = |(b, text): &(usize, String)| {
+            bodies.contains(&(*b as u32)).then(|| format!("; {text}"))
+        };
+        self.weak.iter().find_map(of).unwrap_or_default()
+    }
+
     /// The loads on one subdomain, Σ|f|, the largest of this rank's.
     pub(crate) fn largest_load(&self) -> f64 {
         self.local.iter().map(Subdomain::load).fold(0.0, f64::max)

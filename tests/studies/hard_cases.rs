@@ -112,6 +112,7 @@ fn walls_have_direct_solutions() {
             for jump in [1.0, 1e2, 1e4, 1e6] {
                 let what = format!("jump {jump:e}, seed {seed}");
                 let case = HardCase {
+                    point: None,
                     name: "wall",
                     title: what.clone(),
                     text: wall(&mut Rng::new(seed), 4, jump),

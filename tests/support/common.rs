@@ -114,6 +114,7 @@ impl Grid {
         let dofs = number.keys().map(|&(y, x)| self.dof(b, x, y)).collect();
         let place = |&(y, x): &(usize, usize)| [x as f64 * h, y as f64 * h, 0.0];
         Subdomain {
+            idle: Vec::new(),
             index,
             body,
             k: Csr::from_triplets(n, &triplets).into(),
@@ -183,6 +184,7 @@ impl Grid {
             n_bodies: nb * nb,
             n_subdomains,
             ragged: false,
+            weak: Vec::new(),
             body_names: (0..nb * nb)
                 .map(|b| format!("b{}_{}", b % nb, b / nb))
                 .collect(),

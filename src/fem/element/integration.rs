@@ -36,7 +36,8 @@ pub enum Integration {
     /// mean gradient with the hourglass stiffness of Flanagan and Belytschko (elastic only), as C3D8R and CPE4R.
     ///
     /// A single [`CellKind::Quad8`], [`CellKind::Hex20`] or [`CellKind::Wedge6`] then has motions without energy that
-    /// are not rigid: 1, 6 and 1 of them. They do not fit together on neighbours.
+    /// are not rigid: 1, 6 and 1 of them. Mostly they do not fit together on neighbours; in columns of single wedges or
+    /// hexahedra some do (`src/fem/slack.rs`).
     Reduced,
     /// Incompatible modes, condensed (Wilson, Taylor): bending without locking on [`CellKind::Quad4`] and
     /// [`CellKind::Hex8`], elastic only. C3D8I.

@@ -1,6 +1,11 @@
 //! Whether the map of a cell can be inverted.
+//!
+//! What counts are the points at which the stiffness is integrated, as in CalculiX and Abaqus: a cell is refused where
+//! det J is not positive at one of them. Elsewhere, as at a corner that a bent edge folds over, it makes the cell
+//! doubtful and no more.
 
-use super::loads::check_dim;
+use super::integration::Integration;
+use super::loads::{check_dim, volume};
 use super::map::{by_kind, jacobian, relative, slopes};
 use super::quadrature::Purpose;
 use super::table::table;
@@ -17,10 +22,7 @@ pub enum BadCell {
     Inverted,
     /// It has no volume somewhere: det J is zero where the cell is integrated.
     Degenerate,
-    /// It has no volume at some node, and is sound inside: corners that coincide, middle nodes at a quarter of an edge.
-    /// Its stiffness is finite.
-    Pinched,
-    /// det J has both signs.
+    /// det J is negative where the cell is integrated, and positive in another place.
     Folded,
 }
 
@@ -31,12 +33,20 @@ impl fmt::Display for BadCell {
             BadCell::NotFinite => "has a coordinate that is not a finite number",
             BadCell::Inverted => "is inside out: its nodes are numbered the wrong way round",
             BadCell::Degenerate => "has no volume",
-            BadCell::Pinched => "has no volume at one of its nodes",
             BadCell::Folded => {
                 "is folded: its Jacobian is positive in one place and negative in another"
             }
         })
     }
+}
+
+/// A cell that is integrated soundly, and is folded or has no volume somewhere else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// The node, as a place in the cell, where det J is least; `None`: it is negative between the nodes only.
+    pub node: Option<usize>,
+    /// det J there, in units of its mean over the cell. Not above zero.
+    pub jacobian: f64,
 }
 
 /// What of the product of its columns' lengths det J has to exceed: far below it are only the roundings.
@@ -45,43 +55,82 @@ const ZERO: f64 = 1e-12;
 /// How far a middle node may lie from the middle of its edge, in lengths of the edge, for a cell to count as straight.
 const STRAIGHT: f64 = 1e-10;
 
-/// Whether det J is positive at the nodes and wherever the cell is integrated, errors included.
+/// Whether det J is positive wherever the stiffness is integrated; and if so, whether it is not in another place.
 ///
-/// A cell of second order whose edges are straight, with their nodes in the middle, has the map of its corners, and is
-/// judged by it. The sign is told from zero in relation to the lengths of the edges: a needle is not degenerate.
+/// A cell of second order whose edges are straight, with their nodes in the middle, has the map of its corners, and its
+/// nodes are judged by it. The sign is told from zero in relation to the lengths of the edges: a needle is not
+/// degenerate.
 ///
 /// # Errors
 /// [`BadCell`].
 ///
 /// # Panics
 /// When the cell is not of dimension `dim`, or has another number of nodes.
-pub fn check_jacobian(kind: CellKind, dim: usize, points: &[[f64; 3]]) -> Result<(), BadCell> {
+pub fn check_jacobian(
+    kind: CellKind,
+    dim: usize,
+    points: &[[f64; 3]],
+    integration: Integration,
+) -> Result<Option<Doubt>, BadCell> {
     check_dim(kind, dim);
     assert_eq!(points.len(), kind.nodes(), "a {}", kind.name());
     if !points.iter().flatten().all(|x| x.is_finite()) {
         return Err(BadCell::NotFinite);
     }
-    let kind = if is_straight(kind, points) {
-        kind.linear()
-    } else {
-        kind
+    let bilinear = matches!(kind, CellKind::Quad4 | CellKind::Hex8);
+    let rules: &[Purpose] = match integration {
+        // The mean gradient needs the volume alone, CalculiX the point in the middle.
+        Integration::Reduced if bilinear => &[Purpose::Centre],
+        Integration::Reduced => &[Purpose::Reduced],
+        Integration::Incompatible => &[Purpose::Full, Purpose::Centre],
+        Integration::Full => &[Purpose::Full],
     };
-    let points = &points[..kind.nodes()];
-    let inside = match kind {
-        // Their map is affine.
-        CellKind::Triangle3 | CellKind::Tet4 => signs(kind, points, Purpose::Full),
-        _ => signs(kind, points, Purpose::Full).and(signs(kind, points, Purpose::Error)),
+    let inside = rules
+        .iter()
+        .map(|rule| signs(kind, points, *rule))
+        .reduce(Signs::and)
+        .expect("a rule");
+    let whole = volume(kind, dim, points);
+    let affine = matches!(kind, CellKind::Triangle3 | CellKind::Tet4);
+    if inside.negative || inside.zero || whole <= 0.0 {
+        let elsewhere = || !affine && signs(kind, points, Purpose::Nodes).positive;
+        return Err(match inside {
+            Signs {
+                negative: true,
+                positive: true,
+                ..
+            } => BadCell::Folded,
+            Signs { zero: true, .. } => BadCell::Degenerate,
+            Signs { negative: true, .. } if whole > 0.0 && elsewhere() => BadCell::Folded,
+            Signs { negative: true, .. } => BadCell::Inverted,
+            _ => BadCell::Folded,
+        });
+    }
+    if affine {
+        return Ok(None);
+    }
+    let (shape, corners) = match is_straight(kind, points) {
+        true => (kind.linear(), &points[..kind.corners()]),
+        false => (kind, points),
     };
     // The map of the pyramid has no limit at the apex; on the way there it is that of a point of the base.
-    let nodes = signs(kind, points, Purpose::Nodes);
-    let all = inside.and(nodes);
-    match (all.negative, all.positive) {
-        (true, true) => Err(BadCell::Folded),
-        _ if inside.zero => Err(BadCell::Degenerate),
-        (true, false) => Err(BadCell::Inverted),
-        _ if nodes.zero => Err(BadCell::Pinched),
-        _ => Ok(()),
-    }
+    let nodes = signs(shape, corners, Purpose::Nodes);
+    let between = signs(shape, corners, Purpose::Error);
+    let node = nodes.least.filter(|_| nodes.negative || nodes.zero);
+    let least = match node {
+        Some(_) => nodes.value,
+        None if between.negative => between.value,
+        None => return Ok(None),
+    };
+    let reference = Purpose::Load;
+    let size: f64 = table(kind, reference).weights.iter().sum();
+    Ok(Some(Doubt {
+        node,
+        jacobian: match nodes.negative || between.negative {
+            true => least * size / whole,
+            false => 0.0,
+        },
+    }))
 }
 
 /// Which signs det J has.
@@ -90,14 +139,23 @@ struct Signs {
     positive: bool,
     zero: bool,
     negative: bool,
+    /// Where det J is least, beside the lengths of its columns, and det J there.
+    least: Option<usize>,
+    value: f64,
+    ratio: f64,
 }
 
 impl Signs {
     fn and(self, other: Signs) -> Signs {
+        let (less, more) = match other.ratio < self.ratio {
+            true => (other, self),
+            false => (self, other),
+        };
         Signs {
-            positive: self.positive || other.positive,
-            zero: self.zero || other.zero,
-            negative: self.negative || other.negative,
+            positive: less.positive || more.positive,
+            zero: less.zero || more.zero,
+            negative: less.negative || more.negative,
+            ..less
         }
     }
 }
@@ -117,6 +175,9 @@ fn signs_of<const D: usize, const N: usize>(
         positive: false,
         zero: false,
         negative: false,
+        least: None,
+        value: 0.0,
+        ratio: f64::INFINITY,
     };
     for q in 0..table.weights.len() {
         let j = jacobian(&at, &slopes::<D, N>(table, q));
@@ -136,6 +197,10 @@ fn signs_of<const D: usize, const N: usize>(
             signs.negative = true;
         } else {
             signs.zero = true;
+        }
+        let ratio = det / scale;
+        if ratio < signs.ratio || signs.least.is_none() {
+            (signs.least, signs.value, signs.ratio) = (Some(q), det, ratio);
         }
     }
     signs

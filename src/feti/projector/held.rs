@@ -24,9 +24,10 @@ impl NaturalCoarse {
             if along.driving(motion, 1e-10).is_some() {
                 let who = moving(problem, &self.columns, motion);
                 let way = self.way(problem, stiffness, motion);
+                let weak = weakness(problem, &self.columns, motion);
                 return Err(Error::input(format!(
                     "{who} held by nothing{way} (no Dirichlet side and no tie to a held body) \
-                     and the load does not balance, expected a Dirichlet side or a tie"
+                     and the load does not balance, expected a Dirichlet side or a tie{weak}"
                 )));
             }
         }
@@ -59,9 +60,7 @@ impl NaturalCoarse {
 
 /// The bodies that a combination of kernel vectors moves, as the beginning of a sentence: "body "a" is".
 pub fn moving(problem: &Substructures, columns: &KernelColumns, motion: &Motion) -> String {
-    let largest = motion.largest();
-    let moved = motion.0.iter().filter(|e| e.1.abs() > 1e-8 * largest);
-    let bodies = distinct(moved.map(|e| columns.body(e.0)));
+    let bodies = moved(columns, motion);
     let names: Vec<String> = (bodies.into_iter())
         .map(|b| format!("\"{}\"", problem.body_names[b as usize]))
         .collect();
@@ -70,4 +69,17 @@ pub fn moving(problem: &Substructures, columns: &KernelColumns, motion: &Motion)
         n if n > 4 => format!("bodies {} and {} more are", names[..3].join(", "), n - 3),
         _ => format!("bodies {} are", names.join(", ")),
     }
+}
+
+/// What is to be said of a body that a combination of kernel vectors moves, if its cells leave motions without energy
+/// that are not rigid: behind a sentence.
+pub fn weakness(problem: &Substructures, columns: &KernelColumns, motion: &Motion) -> String {
+    problem.weakness(&moved(columns, motion))
+}
+
+/// The bodies that a combination of kernel vectors moves.
+fn moved(columns: &KernelColumns, motion: &Motion) -> Vec<u32> {
+    let largest = motion.largest();
+    let moved = motion.0.iter().filter(|e| e.1.abs() > 1e-8 * largest);
+    distinct(moved.map(|e| columns.body(e.0)))
 }

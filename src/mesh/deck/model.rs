@@ -5,6 +5,7 @@ use super::joint::{ContactPair, Interaction, Tie};
 use super::place::{Files, Note, Place};
 use super::step::Step;
 use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::mesh::clockwise::side_backwards;
 use crate::mesh::MeshFile;
 
 /// A deck of Abaqus or CalculiX that asks for static steps of linear elasticity with contact.
@@ -115,6 +116,22 @@ impl Deck {
     /// 2 or 3.
     pub fn dim(&self) -> usize {
         self.elements.first().map_or(3, |e| e.kind().dim())
+    }
+
+    /// Makes the nodes of plane elements run counter-clockwise. Numbers of faces keep their meaning: those of pressures
+    /// and surfaces are numbered anew. Returns the elements that ran clockwise.
+    pub(crate) fn turn_clockwise(&mut self) -> Vec<u32> {
+        if self.dim() != 2 {
+            return Vec::new();
+        }
+        let turned = self.mesh.turn_clockwise();
+        for pressure in self.steps.iter_mut().flat_map(|step| &mut step.pressures) {
+            if turned.binary_search(&pressure.cell).is_ok() {
+                let kind = self.mesh.cells.kind(pressure.cell as usize);
+                pressure.side = side_backwards(kind, pressure.side);
+            }
+        }
+        turned
     }
 
     /// The axes along which the directions of `node` count, if they are not those of the coordinates: row i is axis i.

@@ -26,6 +26,9 @@ pub struct PlanReport {
     /// Motions that no row holds: a load on one has no answer, and without it the place along it is arbitrary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_motions: Vec<FreeMotion>,
+    /// What makes the answer doubtful: a sentence each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The bodies.
     pub bodies: Vec<PlannedBody>,
     /// Pairs of bodies that touch or may touch.

@@ -30,11 +30,12 @@ pub(super) fn meshes(deck: &Deck, numbers: &Numbers) -> Vec<Extracted> {
     numbers.parts.iter().map(mesh).collect()
 }
 
-/// The bodies at the end of a step, and the supports along oblique axes as equations.
+/// The bodies at the end of a step, with cells that are integrated in full or as their elements say, and the supports
+/// along oblique axes as equations.
 pub(super) fn of(
     deck: &Deck,
     numbers: &Numbers,
-    meshes: &[Extracted],
+    (meshes, in_full): (&[Extracted], bool),
     step: usize,
 ) -> Result<(Vec<BodySpec>, Vec<EquationSpec>)> {
     let mut out = Vec::with_capacity(numbers.parts.len());
@@ -47,7 +48,11 @@ pub(super) fn of(
     for (b, mesh) in meshes.iter().enumerate() {
         let mesh = mesh.clone().map_err(Error::Input)?;
         let part = &numbers.parts[b];
-        out.push(body(deck, b, part, mesh, (step, &pressures[b]))?);
+        let mut body = body(deck, b, part, mesh, (step, &pressures[b]))?;
+        if in_full {
+            body.integration.clear();
+        }
+        out.push(body);
     }
     name(deck, numbers, &mut out);
     let equations = supports(deck, numbers, step, &mut out)?;

@@ -31,7 +31,9 @@ pub struct DeckScenes {
     deck: Deck,
     numbers: Numbers,
     meshes: Vec<Extracted>,
-    /// A sentence for each kind of defect in its mesh.
+    /// Whether all elements are integrated in full, whatever their types.
+    in_full: bool,
+    /// A sentence for each kind of defect in its mesh, and on what was turned in it.
     torn: Vec<String>,
 }
 
@@ -59,22 +61,32 @@ impl DeckScenes {
     ///
     /// # Errors
     /// [`Error::Input`] for one without a step.
-    pub(crate) fn of(deck: Deck) -> Result<DeckScenes> {
+    pub(crate) fn of(mut deck: Deck) -> Result<DeckScenes> {
         if deck.steps.is_empty() {
             return Err(Error::Input(format!(
                 "{}: the deck has no *STEP (one at least was expected)",
                 deck.mesh.name
             )));
         }
+        let turned = deck.turn_clockwise();
         let numbers = Numbers::new(&deck);
         let meshes = bodies::meshes(&deck, &numbers);
-        let torn = torn::notes(&deck, &numbers, &meshes);
+        let mut torn = torn::notes(&deck, &numbers, &meshes);
+        torn.extend(clockwise(&deck, &turned));
         Ok(DeckScenes {
             deck,
             numbers,
             meshes,
+            in_full: false,
             torn,
         })
+    }
+
+    /// The same deck, with all elements integrated in full if `in_full` is set: C3D8R as C3D8, C3D6 with six points.
+    #[must_use]
+    pub fn integrated(mut self, in_full: bool) -> DeckScenes {
+        self.in_full = in_full;
+        self
     }
 
     /// The deck as it was read.
@@ -131,7 +143,8 @@ impl DeckScenes {
             ..Form::default()
         };
         let numbers = &self.numbers;
-        let (bodies, mut equations) = bodies::of(deck, numbers, &self.meshes, step)?;
+        let (bodies, mut equations) =
+            bodies::of(deck, numbers, (&self.meshes, self.in_full), step)?;
         equations.extend(joints::equations(deck, numbers)?);
         let spec = SceneSpec {
             form,
@@ -185,4 +198,19 @@ impl DeckScenes {
         }
         self.deck.tables(step, &all(displacement), &forces)
     }
+}
+
+/// A sentence on the elements that ran clockwise, if there are any.
+fn clockwise(deck: &Deck, turned: &[u32]) -> Option<String> {
+    let first = deck.mesh.cell_ids[*turned.first()? as usize];
+    let (file, who) = (
+        &deck.mesh.name,
+        match turned.len() {
+            1 => format!("the nodes of element {first} run clockwise"),
+            n => format!("the nodes of {n} elements run clockwise (the first is element {first})"),
+        },
+    );
+    Some(format!(
+        "{file}: {who}; they are taken counter-clockwise, and face numbers keep their meaning (CalculiX refuses them)"
+    ))
 }

@@ -1,10 +1,29 @@
 //! Dimension, physics and elements of a scene.
 
-use super::document::{Section, Value};
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::fem::cell::{Cure, Element, Plane};
+use crate::fem::element::Integration;
 use crate::fem::{Form, Physics};
+use crate::mesh::CellMesh;
+
+/// How the cells of a body are integrated.
+pub(super) fn integration(item: &Item) -> Result<Integration> {
+    item.choice(&[
+        ("full", Integration::Full),
+        ("reduced", Integration::Reduced),
+        ("incompatible", Integration::Incompatible),
+    ])
+}
+
+/// The rule of every cell; none: all in full.
+pub(super) fn rules(rule: Option<Integration>, mesh: &CellMesh) -> Vec<Integration> {
+    match rule.unwrap_or_default() {
+        Integration::Full => Vec::new(),
+        rule => vec![rule; mesh.cells.len()],
+    }
+}
 
 impl Reader {
     /// Reads the keys of the scene on which all others depend.

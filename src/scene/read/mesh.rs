@@ -2,6 +2,7 @@
 
 use super::document::{Item, Section, Value};
 use super::fields::Shape;
+use super::form::{integration, rules};
 use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
@@ -39,9 +40,9 @@ impl Source {
     pub fn read(reader: &Reader, item: &Item) -> Result<Source> {
         let mut section = item.section("[mesh]")?;
         let file = section.need("file", "the name of a file")?;
+        let mesh = load_beside(file)?.counter_clockwise(reader.dim);
         let scale = section.read("scale", |item| reader.positive(item))?;
         section.finish()?;
-        let mesh = load_beside(file)?;
         let mut groups = HashMap::new();
         for (k, group) in mesh.groups.iter().enumerate() {
             if matches!(group.members, Members::Cells { dim, .. } if dim == reader.dim) {
@@ -240,12 +241,11 @@ impl Reader {
                 item.count("\"auto\" or a positive whole number")?,
             )),
         })?;
+        let rule = section.read("integration", integration)?;
         let parts = source.parts(item, &name)?;
         let several = parts.len() > 1;
-        let mut names = BTreeSet::new();
-        for part in &parts {
-            names.extend(part.sides.iter().map(|side| side.name.clone()));
-        }
+        let sides = parts.iter().flat_map(|part| &part.sides);
+        let names: BTreeSet<String> = sides.map(|side| side.name.clone()).collect();
         let shape = Shape {
             mesh: BoxMesh::plane([0.0; 2], [1.0; 2], [1; 2], [1; 2]),
             bodies: None,
@@ -273,6 +273,7 @@ impl Reader {
                 let (name, first, expected) = (&body.name, &defect.first, defect.expected);
                 return item.error(format!("body `{name}`: {first} ({expected})"));
             }
+            body.integration = rules(rule, &mesh);
             body.mesh = mesh.into();
             body.dirichlet = vec![[const { None }; 3]; body.mesh.n_sides()].into();
             conditions.apply(&mut body);

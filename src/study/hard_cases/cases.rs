@@ -1,5 +1,6 @@
 //! The cases, in the format of scene files.
 
+use super::decks::{decks, KnownDisplacement};
 use super::trackers::{trackers, KnownForce};
 
 /// One case.
@@ -9,10 +10,12 @@ pub struct HardCase {
     pub name: &'static str,
     /// The difficulty of the case.
     pub title: String,
-    /// The scene.
+    /// The scene, or a deck, which begins with an asterisk.
     pub text: String,
     /// A force that is known beforehand.
     pub force: Option<KnownForce>,
+    /// A displacement that is known beforehand.
+    pub point: Option<KnownDisplacement>,
 }
 
 /// The keys of a scene before its bodies.
@@ -51,6 +54,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut out = Vec::new();
     let mut add = |name, title: &str, text| {
         out.push(HardCase {
+            point: None,
             name,
             title: title.to_string(),
             text,
@@ -62,6 +66,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     contacts(&mut add);
     walls(&mut add);
     out.extend(trackers());
+    out.extend(decks());
     out
 }
 

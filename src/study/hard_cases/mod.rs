@@ -5,9 +5,11 @@
 //! `refused`, where the program says so itself; or as `WRONG`.
 
 mod cases;
+mod decks;
 mod trackers;
 
 pub use cases::{cases, HardCase};
+pub use decks::{decks, KnownDisplacement};
 pub use trackers::{trackers, KnownForce};
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +19,7 @@ use crate::assembled::layout::Layout;
 use crate::assembled::reference::Reference;
 use crate::assembled::system::Copies;
 use crate::feti::MethodSettings;
+use crate::parallel::exchange::highest;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::tables::table::{condition, count, fixed, scientific, Table};
@@ -94,6 +97,9 @@ pub struct Record {
     pub condition: json::Condition,
     /// A force that is known beforehand: found, and known.
     pub force: Option<[f64; 2]>,
+    /// A displacement that is known beforehand: found, and known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<[f64; 2]>,
     /// Why there is no direct solution, where the assembled problem has no form for one. The certificate decides then.
     pub undecided: Option<String>,
     /// The certificate of the method.
@@ -149,8 +155,13 @@ pub fn run(
 /// # Errors
 /// As [`run`].
 pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record> {
-    let file = format!("{}.toml", case.name);
-    let scene = session.agree(crate::Scene::parse(&file, &case.text))?;
+    let ending = if case.text.starts_with('*') {
+        "inp"
+    } else {
+        "toml"
+    };
+    let file = format!("{}.{ending}", case.name);
+    let scene = session.agree(super::solved::scene(&file, &case.text))?;
     let mut record = Record {
         case: case.name.into(),
         title: case.title.clone(),
@@ -183,8 +194,11 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         let found = solved.rows(session).iter().map(along).sum();
         record.force = Some([found, known.value]);
     }
+    if let Some(known) = &case.point {
+        record.displacement = Some([displacement(session, &solved, known), known.value]);
+    }
     compare(session, &solved, &mut record)?;
-    judge(&solved, case.force, &mut record);
+    judge(&solved, case, &mut record);
     Ok(record)
 }
 
@@ -209,6 +223,22 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         .count();
     record.active[0] = (facts.inequalities > 0).then_some(active);
     Ok(())
+}
+
+/// The displacement at a node, which some rank has. Collective.
+fn displacement(session: &Session, solved: &Solved, known: &KnownDisplacement) -> f64 {
+    let mut found = f64::NEG_INFINITY;
+    for (sub, u) in solved.solver.problem().local.iter().zip(&solved.solution.u) {
+        let body = &solved.scene.bodies[sub.body];
+        for (i, point) in sub.coordinates.iter().flatten().enumerate() {
+            let axis = (sub.dofs[i] - body.first_dof) as usize % body.components;
+            let near = (0..3).all(|d| (point[d] - known.at[d]).abs() < 1e-9);
+            if near && axis == known.axis {
+                found = u[i];
+            }
+        }
+    }
+    highest(session.comm(), found)
 }
 
 /// Compares with the direct solution.
@@ -243,17 +273,19 @@ fn compare(session: &Session, solved: &Solved, record: &mut Record) -> Result<()
 }
 
 /// The verdict, when all comparisons are made.
-fn judge(solved: &Solved, force: Option<KnownForce>, record: &mut Record) {
+fn judge(solved: &Solved, case: &HardCase, record: &mut Record) {
     let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
     let right = match record.undecided {
         None => near(record.error_energy) && near(record.error_max),
         // The problem is convex: what satisfies the conditions of optimality is the solution.
         Some(_) => near(record.kkt.map(|kkt| kkt.largest())),
     };
-    let balanced = match (force, record.force) {
-        (Some(known), Some([found, value])) => (found - value).abs() <= known.within,
+    let within = |known: Option<f64>, found: Option<[f64; 2]>| match (known, found) {
+        (Some(within), Some([found, value])) => (found - value).abs() <= within,
         _ => true,
     };
+    let balanced = within(case.force.map(|k| k.within), record.force)
+        && within(case.point.map(|k| k.within), record.displacement);
     record.verdict = match (solved.solution.converged(), right && balanced) {
         (false, _) => Verdict::NotConverged,
         (true, true) => Verdict::Solved,
@@ -308,6 +340,9 @@ pub fn text(report: &HardCasesReport) -> String {
         out += &format!("{}: {}", c.case, c.title);
         if let Some([found, known]) = c.force {
             out += &format!(". Force {found:.7e}, known {known:.7e}");
+        }
+        if let Some([found, known]) = c.displacement {
+            out += &format!(". Displacement {found:.7e}, known {known:.7e}");
         }
         if let Some(message) = &c.message {
             out += &format!(". Said: {message}");

@@ -54,6 +54,7 @@ fn plank() -> HardCase {
         &format!("{elastic}dirichlet = {{ right = [\"-0.011 + 0.02*(y - 9.6)\", 0] }}\n"),
     );
     HardCase {
+        point: None,
         name: "moose-10950-plank",
         title: "a block turned into a long plank, at a gap, nodes between two faces (moose#10950)"
             .into(),
@@ -80,6 +81,7 @@ fn facets() -> HardCase {
          traction = { top = [0, \"-0.01*(1 + 0.2*(x - 2))\"] }\n",
     );
     HardCase {
+        point: None,
         name: "moose-10950-facets",
         title: "a round block in a bowl of flat faces, nodes before corners (moose#10950)".into(),
         text: format!(
@@ -125,6 +127,7 @@ fn touching() -> HardCase {
     let motion = "[\"0.01 - 0.02*y + 0.03*z\", \"0.02*x - 0.01*z - 0.04\", \"0.01*y - 0.03*x\"]";
     let given = |side: &str| format!("dirichlet = {{ {side} = {motion} }}\n");
     HardCase {
+        point: None,
         name: "4c-1585-moved",
         title: "solids that touch without a force, moved and turned as one (4C#1585)".into(),
         text: solids(&given("bottom"), &given("top")),
@@ -135,6 +138,7 @@ fn touching() -> HardCase {
 /// No load, and nothing but the contact holds the upper one.
 fn at_rest() -> HardCase {
     HardCase {
+        point: None,
         name: "4c-1585-at-rest",
         title: "a solid that lies on another one without any load (4C#1585)".into(),
         text: solids(
@@ -159,6 +163,7 @@ fn incompressible() -> HardCase {
          dirichlet = { top = { x = 0 } }\ntraction = { top = [0, -0.1] }\n",
     );
     HardCase {
+        point: None,
         name: "kratos-11713-rubber",
         title: "a round punch pressed into rubber, ν = 0.49999 (Kratos#11713)".into(),
         text: format!(
@@ -196,6 +201,7 @@ fn press_fit() -> HardCase {
     let pressure = young * overlap / joint / ((r2 + a2) / (r2 - a2) + (b2 + r2) / (b2 - r2));
     let force = pressure * 2.0 * std::f64::consts::PI * joint * length;
     HardCase {
+        point: None,
         name: "calculix-98-press-fit",
         title: "a hub on a hollow shaft, with the force of the closed form (CalculiX#98)".into(),
         text: format!(
@@ -232,6 +238,7 @@ fn tied() -> HardCase {
         &format!("{held}{pushed}"),
     );
     HardCase {
+        point: None,
         name: "calculix-83-tie",
         title: "two tied blocks and a beam beside them (CalculiX#83)".into(),
         text: format!(
@@ -277,6 +284,7 @@ fn crossing() -> HardCase {
         ),
     ];
     HardCase {
+        point: None,
         name: "flow123d-1381-crossing",
         title: "two fractures that cross, closed in part (flow123d#1381)".into(),
         text: format!(

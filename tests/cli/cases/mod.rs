@@ -1,7 +1,10 @@
 //! Models that once had a wrong answer, or were refused with a sentence that misleads: tests/data/cases.
 
+mod cells;
+mod energy;
 mod motions;
 mod pins;
+mod slack;
 
 use crate::support::mpi::{Output, Scratch};
 use crate::support::program::run_fetifeti;

@@ -124,7 +124,7 @@ fn parts_have_the_rows_of_the_whole() {
                         ranks,
                         rank,
                     };
-                    let part = Scene::load_if(Path::new(file), |_| Ok(wanted)).expect(file);
+                    let part = Scene::load_if(Path::new(file), false, |_| Ok(wanted)).expect(file);
                     let owns = wanted.owns(&whole.bodies);
                     let written = |s: &Scene| format!("{:?}", s.rows(&owns));
                     assert_eq!(written(&part), written(&whole), "{file}");
@@ -200,7 +200,7 @@ fn points_and_given_values_are_found_by_way_of_bodies_in_between() {
                     ranks,
                     rank,
                 };
-                let part = Scene::load_if(&path, |_| Ok(wanted)).expect("a part");
+                let part = Scene::load_if(&path, false, |_| Ok(wanted)).expect("a part");
                 let owns = wanted.owns(&whole.bodies);
                 let points = whole.points.iter().filter(|p| owns(p.subdomain));
                 assert!(part.points.iter().eq(points), "{kind}: {rank} of {ranks}");
@@ -223,7 +223,7 @@ fn parts_know_the_interfaces_of_their_bodies_and_rows() {
             ranks,
             rank,
         };
-        let scene = Scene::load_if(Path::new(file), |_| Ok(part)).expect(file);
+        let scene = Scene::load_if(Path::new(file), false, |_| Ok(part)).expect(file);
         assert_eq!(scene.interfaces.len(), whole.interfaces.len());
         let known: Vec<(usize, &Interface)> = scene.interfaces.numbered().collect();
         // The first rank reports all.

@@ -222,6 +222,7 @@ impl Solid {
         }
         let at = |x: [usize; 3]| [0, 1, 2].map(|d| if d < dim { x[d] as f64 * h } else { 0.0 });
         Subdomain {
+            idle: Vec::new(),
             index,
             body,
             k: Csr::from_triplets(n, &triplets).into(),
@@ -342,6 +343,7 @@ impl Solid {
             n_subdomains: self.n_subdomains(),
             ragged: false,
             body_names: (0..self.n_bodies()).map(|b| format!("b{b}")).collect(),
+            weak: Vec::new(),
             local: (0..self.n_subdomains())
                 .filter(|&s| mine(s))
                 .map(|s| self.subdomain(s))
