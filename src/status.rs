@@ -17,6 +17,8 @@ pub enum Status {
     Refinement,
     /// The iteration converged, but the displacements are far from equilibrium, or rows are far from holding.
     Certificate,
+    /// Everything reached its tolerance, but the forces on a body do not balance.
+    Balance,
     /// The residual of the host's equations stopped to fall above its tolerance: rounding.
     Stagnation,
     /// The contact loop reached its largest number of steps.
@@ -31,6 +33,7 @@ impl Status {
             Status::NothingToDo | Status::Rounding => true,
             Status::Refinement
             | Status::Certificate
+            | Status::Balance
             | Status::Stagnation
             | Status::ContactSteps => false,
         }
@@ -50,7 +53,9 @@ impl Status {
             Status::Krylov(reason) => reason.code,
             Status::NothingToDo => ConvergedReason::RTOL,
             Status::Rounding => ConvergedReason::ATOL,
-            Status::Refinement | Status::Certificate => ConvergedReason::PC_FAILED,
+            Status::Refinement | Status::Certificate | Status::Balance => {
+                ConvergedReason::PC_FAILED
+            }
             Status::Stagnation => ConvergedReason::BREAKDOWN,
             Status::ContactSteps => ConvergedReason::ITS,
         }
@@ -68,6 +73,11 @@ impl Status {
                  solution: look for elements or coefficients of very different size, and try \
                  -fetifeti_primal vertices,edges,faces or other bodies (-fetifeti_bodies)",
             ),
+            Status::Balance => Some(
+                "the loads, springs, contacts and reactions of a body do not add up to nothing, so that the result is \
+                 no solution: ask for more digits (-fetifeti_ksp_rtol), and look for elements or coefficients of very \
+                 different size",
+            ),
             _ => None,
         }
     }
@@ -80,6 +90,7 @@ impl Status {
             Status::Rounding => "CONVERGED_ROUNDING",
             Status::Refinement => "DIVERGED_REFINEMENT",
             Status::Certificate => "DIVERGED_CERTIFICATE",
+            Status::Balance => "DIVERGED_BALANCE",
             Status::Stagnation => "DIVERGED_STAGNATION",
             Status::ContactSteps => "DIVERGED_CONTACT_ITS",
         }

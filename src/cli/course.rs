@@ -2,25 +2,25 @@
 
 use std::path::Path;
 
-use super::contact;
 use super::early::Early;
 use super::events::Events;
 use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::renewed::Renewed;
+use super::{balance, contact};
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::parallel::exchange::total;
 use crate::petsc::signals::{self, Heeded};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::certified::Certified;
-use crate::report::json::contact::{LoadStep, OuterStep};
+use crate::report::json::contact::{BodyBalance, LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
 use crate::scene::sliding::{self, Sliding};
 use crate::scene::{distribution, Displaced, Scene, Stepping};
 use crate::substructures::SolvedRow;
-use crate::{FetiFeti, Result, Solution};
+use crate::{FetiFeti, Result, Solution, Status};
 
 /// The results over the load steps.
 pub(super) struct Course {
@@ -42,6 +42,10 @@ pub(super) struct Course {
     pub rows: Vec<SolvedRow>,
     /// The scene with the contacts of this solution, where load steps renew them.
     pub scene: Option<Scene>,
+    /// The forces on every body in balance, on rank 0.
+    pub balances: Vec<BodyBalance>,
+    /// What is not in balance, on rank 0.
+    pub unbalanced: Option<String>,
     /// In elasticity with contact, how far the sides that touch have slid since the pairing was made.
     pub slides: Option<contact::Slides>,
     /// The fields of this solution, where load steps are written.
@@ -126,7 +130,7 @@ pub(super) fn follow(
             checkpoints.save(session, step, || records.followed_by(&outer), state)?;
             signals::heed(session)
         });
-        let solution = solved.map_err(|e| match signals::is_end(&e) {
+        let mut solution = solved.map_err(|e| match signals::is_end(&e) {
             true => checkpoints.ended(e, (step, n), outer.len()),
             false => renewed.at_step(step, e),
         })?;
@@ -134,6 +138,11 @@ pub(super) fn follow(
         let mine = solver.problem().local.iter().map(|s| s.index);
         let given = session.agree(scene.given_energy(mine, step))?;
         let given = total(session.comm(), given);
+        let balances = balance::bodies(session, scene, solver, &solution, step)?;
+        let (fails, unbalanced) = balance::out_of_balance(session, &balances);
+        if fails && solution.converged() {
+            solution.status = Status::Balance;
+        }
         let rows = contact::rows(session, &solution);
         let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
         let (local, u, own) = (&solver.problem().local, &solution.u, solution.rows());
@@ -169,6 +178,8 @@ pub(super) fn follow(
             recover_seconds: seconds[1],
             solution,
             rows,
+            balances: balances.into_iter().map(|b| b.record).collect(),
+            unbalanced,
             slides,
             scene: None,
             fields: None,

@@ -21,6 +21,7 @@ mod plan_record;
 mod plan_tables;
 mod record;
 mod renewed;
+mod row_forces;
 mod searches;
 mod single;
 mod solve;

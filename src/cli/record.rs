@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::course::Course;
-use super::{balance, contact, doubts, physics};
+use super::{contact, doubts, physics};
 use crate::feti::projector::distributed::{self, Work};
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
@@ -251,7 +251,7 @@ fn contact_report(
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
         interfaces: contact::forces(scene, &course.rows, course.slides.as_ref()),
-        bodies: balance::bodies(session, scene, solver, &course.rows, course.step)?,
+        bodies: course.balances.clone(),
         load_steps: course.load_steps.clone(),
         updated: scene.is_renewed(),
         renewable: !scene.is_renewed() && scene.may_be_renewed(),

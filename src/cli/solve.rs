@@ -166,6 +166,7 @@ fn solve(
     if session.rank() == 0 {
         report.inputs = inputs::of(&args.scene);
     }
+    report.warnings.extend(course.unbalanced.clone());
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {

@@ -2,7 +2,9 @@
 
 use super::course::Course;
 use super::fields::to_first_rank;
+use super::row_forces::RowForces;
 use crate::fem::{element, internal_force, SubdomainMesh};
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::json::probes::ProbeValue;
 use crate::scene::{Scene, SteppedMesh};
@@ -40,11 +42,20 @@ impl Values {
         let of = |mesh: &SubdomainMesh, nodal: Vec<f64>| internal_force(mesh, &nodal);
         let solved = (&course.solution, course.step);
         let mut all = Values::gather(session, scene, solver, solved, &of, &add)?;
-        // Rank 0 has all rows; the lists of the other ranks are empty.
-        for row in course.rows.iter().filter(|row| row.is_inequality()) {
-            for (member, force) in row.forces() {
-                let first = all.components * member.node;
-                let to = &mut all.by_body[member.body][first..first + all.components];
+        // Rows between sides whose nodes do not match have forces at many nodes.
+        let mut outgoing = vec![Vec::new(); session.size()];
+        RowForces::new(session, scene)?.each(course.solution.rows(), |row, _, at, force| {
+            if row.is_inequality() {
+                outgoing[0].extend([at.body as u64, at.node as u64]);
+                outgoing[0].extend(force.map(f64::to_bits));
+            }
+        });
+        for words in exchange_words(session.comm(), outgoing) {
+            for word in words.chunks_exact(5) {
+                let [body, node] = [word[0] as usize, word[1] as usize];
+                let first = all.components * node;
+                let to = &mut all.by_body[body][first..first + all.components];
+                let force = word[2..].iter().map(|&w| f64::from_bits(w));
                 to.iter_mut().zip(force).for_each(|(to, f)| *to -= f);
             }
         }

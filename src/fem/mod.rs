@@ -19,7 +19,7 @@ mod subdomain;
 pub(crate) use assemble::{free_load, given_columns, matrix};
 pub(crate) use energy::given_energy;
 pub use form::{Form, Physics};
-pub use internal_force::internal_force;
+pub use internal_force::{force_at_given, internal_force, Held};
 pub use loads::Quadrature;
 pub(crate) use loads::{add_side_load, load_vector, SidePart};
 pub(crate) use norms::error_squares;

@@ -89,10 +89,23 @@ fn neighbours(cells: &Cells, n_nodes: usize) -> Lists {
 }
 
 /// Calls `f` with the nodes and the stiffness matrix, by rows, of every cell.
-pub fn each_matrix(mesh: &SubdomainMesh, cells: &Cells, mut f: impl FnMut(&[u32], &[f64])) {
+pub fn each_matrix(mesh: &SubdomainMesh, cells: &Cells, f: impl FnMut(&[u32], &[f64])) {
+    some_matrices(mesh, cells, |_| true, f);
+}
+
+/// [`each_matrix`] of the cells that are `wanted`.
+pub fn some_matrices(
+    mesh: &SubdomainMesh,
+    cells: &Cells,
+    wanted: impl Fn(&[u32]) -> bool,
+    mut f: impl FnMut(&[u32], &[f64]),
+) {
     let c = mesh.components();
     let (mut points, mut matrix) = (Vec::new(), Vec::new());
     for (e, (kind, nodes)) in cells.iter().enumerate() {
+        if !wanted(nodes) {
+            continue;
+        }
         points.clear();
         points.extend(nodes.iter().map(|&k| mesh.points[k as usize]));
         matrix.clear();

@@ -22,6 +22,7 @@ pub(crate) mod deck;
 mod displaced;
 #[cfg(feature = "cli")]
 pub(crate) mod distribution;
+mod equilibrium;
 #[cfg(feature = "cli")]
 pub(crate) mod fits;
 pub(crate) mod geometry;
@@ -51,6 +52,7 @@ pub use body::Body;
 pub use checked::Scene;
 pub use deck::DeckScenes;
 pub use displaced::Displaced;
+pub use equilibrium::{Forces, Wrench};
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use interfaces::Interfaces;
 pub use loads::{SteppedMesh, Stepping};
@@ -80,4 +82,5 @@ pub(crate) use read::read;
 pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, Point, PointRow};
+pub use rows::terms::{RowTerm, RowTerms};
 pub use side_pair::{SidePair, SurfaceObstacle};

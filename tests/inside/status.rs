@@ -15,6 +15,7 @@ fn numbers_have_the_sign_of_what_happened() {
         (Status::Rounding, 3),
         (Status::Refinement, -11),
         (Status::Certificate, -11),
+        (Status::Balance, -11),
         (Status::Stagnation, -5),
         (Status::ContactSteps, -3),
     ];

@@ -204,7 +204,7 @@ impl<'de> Deserialize<'de> for Amount {
     }
 }
 
-/// Equilibrium of one body.
+/// Equilibrium of one body: its loads, springs, contacts and reactions add up to nothing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyBalance {
     /// Name of the body.
@@ -213,17 +213,31 @@ pub struct BodyBalance {
     pub floating: bool,
     /// Resultant of its loads.
     pub load: Amount,
-    /// Resultant of the forces on its interfaces and at its obstacles.
+    /// Resultant of the springs that it stands on; absent where it stands on none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub springs: Option<Amount>,
+    /// Resultant of the forces on its interfaces, at its obstacles and in its equations.
     pub contact: Amount,
-    /// Resultant of the reactions at prescribed displacements; `null` for a body without any.
+    /// Resultant of the reactions at prescribed displacements, as the elements have them, less what the iteration leaves
+    /// (`imbalance`) where that is within the tolerance; `null` for a body without any.
     pub reaction: Option<Amount>,
-    /// Imbalance of the forces, relative to the forces; in elasticity only of components that are prescribed nowhere.
+    /// What the forces leave, relative to the largest sum of the sizes of loads, springs, contacts or reactions; of
+    /// rings along the axis.
     #[serde(with = "number")]
     pub imbalance: f64,
     /// In elasticity, for bodies without prescribed displacements: imbalance of the moments about the body's centre,
     /// relative to the moments of the single forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment_imbalance: Option<f64>,
+    /// The point that moments are about: the centre of the box around the body. Absent where moments say nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Vec<f64>>,
+    /// The moment of the reactions about it: in the plane a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reaction_moment: Option<Amount>,
+    /// As `moment_imbalance`, for bodies with prescribed displacements: the moment of the reactions counts, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_moment_imbalance: Option<f64>,
 }
 
 /// One load step.

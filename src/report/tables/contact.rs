@@ -266,9 +266,11 @@ fn balance(r: &ContactReport) -> String {
     }
     let size = |x: f64| if x.is_nan() { f64::INFINITY } else { x.abs() };
     let mut order: Vec<_> = r.bodies.iter().collect();
-    let worst = |b: &BodyBalance| size(b.imbalance).max(b.moment_imbalance.map_or(0.0, size));
+    let of_moments = |b: &BodyBalance| b.moment_imbalance.or(b.held_moment_imbalance);
+    let worst = |b: &BodyBalance| size(b.imbalance).max(of_moments(b).map_or(0.0, size));
     order.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
-    let moments = order.iter().any(|b| b.moment_imbalance.is_some());
+    let moments = order.iter().any(|b| of_moments(b).is_some());
+    let springs = order.iter().any(|b| b.springs.is_some());
     let shown = &order[..order.len().min(BODIES)];
     let reaction = |b: &BodyBalance| match &b.reaction {
         Some(reaction) => vector(&reaction.0),
@@ -278,11 +280,15 @@ fn balance(r: &ContactReport) -> String {
     let table = Table::of(shown)
         .words("body", |b| &b.name)
         .numbers("load", |b| vector(&b.load.0))
+        .when(springs, |t| {
+            let of = |b: &BodyBalance| b.springs.as_ref().map_or("–".into(), |f| vector(&f.0));
+            t.numbers("springs", move |b| of(b))
+        })
         .numbers("contact", |b| vector(&b.contact.0))
         .numbers("reaction", |b| reaction(b))
         .numbers("imbalance", |b| scientific(Some(b.imbalance)))
         .when(moments, |t| {
-            t.numbers("of moments", |b| scientific(b.moment_imbalance))
+            t.numbers("of moments", |b| scientific(of_moments(b)))
         })
         .table();
     let more = match order.len() - shown.len() {

@@ -310,6 +310,7 @@ fn supports(
                 terms: (0..dim).map(|d| (at.body, first + d, axis[d])).collect(),
                 value: support.value,
                 resolution: 0.0,
+                support: true,
                 written: format!("{}: ", deck.files.at(support.place)),
             }),
         }

@@ -128,6 +128,7 @@ pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSp
             terms,
             value: 0.0,
             resolution: deck.factor_resolution,
+            support: false,
             written: at(deck, equation.place),
         });
     }

@@ -130,6 +130,8 @@ pub struct EquationSpec {
     pub value: f64,
     /// One unit in the last digit of the factors; 0 where they are exact.
     pub resolution: f64,
+    /// Whether it is a given displacement along an oblique axis: its forces are reactions.
+    pub support: bool,
     /// Where it was written, or empty.
     pub written: String,
 }

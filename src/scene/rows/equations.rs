@@ -14,6 +14,10 @@ use crate::scene::validate::agree;
 pub struct Equation {
     /// (body dof, coefficient) of the free degrees of freedom.
     pub terms: Vec<(u64, f64)>,
+    /// (body dof, coefficient) of those that are given.
+    pub held: Vec<(u64, f64)>,
+    /// Whether it is a given displacement along an oblique axis: its forces are reactions.
+    pub support: bool,
     /// The right-hand side without the given values.
     pub value: f64,
     /// Σ coefficient · u of the given values, without the factors of load steps.
@@ -37,15 +41,16 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
     }
     for spec in specs {
         let mut terms: Vec<(u64, f64)> = Vec::new();
-        let mut given = 0.0;
+        let (mut held, mut given) = (Vec::new(), 0.0);
         let mut first: Option<(u64, usize)> = None;
         for &(b, dof, factor) in &spec.terms {
             let body = &bodies[b];
+            let of_body = body.first_dof + dof as u64;
             if let Some(value) = body.prescribed_at(dof) {
                 given += factor * value;
+                held.push((of_body, factor));
                 continue;
             }
-            let of_body = body.first_dof + dof as u64;
             match terms.iter_mut().find(|t| t.0 == of_body) {
                 Some(term) => term.1 += factor,
                 None => terms.push((of_body, factor)),
@@ -67,6 +72,8 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
         };
         out.push(Equation {
             terms,
+            held,
+            support: spec.support,
             value: spec.value,
             given,
             resolution: spec.resolution,

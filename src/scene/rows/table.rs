@@ -64,7 +64,7 @@ impl Scene {
     }
 
     /// The equations beside ties, with their numbers.
-    fn own_equations<'s>(
+    pub(super) fn own_equations<'s>(
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
     ) -> impl Iterator<Item = (usize, &'s Equation)> {
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// The rows between sides whose nodes do not match.
-    fn own_mortar<'s>(
+    pub(super) fn own_mortar<'s>(
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
     ) -> impl Iterator<Item = &'s MortarRow> {

@@ -1,5 +1,6 @@
 //! Models that once had a wrong answer, or were refused with a sentence that misleads: tests/data/cases.
 
+mod balances;
 mod cells;
 mod energy;
 mod motions;

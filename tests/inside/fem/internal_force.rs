@@ -59,5 +59,17 @@ fn the_force_is_the_assembled_matrix_times_the_displacement() {
         for (a, b) in internal_force(&mesh, &u).iter().zip(&expected) {
             assert!((a - b).abs() < 1e-13, "{a}, not {b}");
         }
+        // Without springs: node 0 stands on none.
+        let mut v = vec![0.0; 12];
+        v[0] = 2.0;
+        let held = force_at_given(&mesh, &u, &[v]);
+        let (columns, values) = k.row(0);
+        let own = columns.iter().position(|&c| c == 0).unwrap();
+        assert!((held.energies[0] - 4.0 * values[own]).abs() < 1e-13);
+        let [(0, force)] = held.force[..] else {
+            panic!("{held:?}");
+        };
+        assert!((force - expected[0]).abs() < 1e-13, "{force}");
+        assert!(held.terms >= force.abs());
     }
 }

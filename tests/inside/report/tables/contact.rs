@@ -48,7 +48,7 @@ fn sample(steps: usize, n: usize) -> ContactReport {
                 contact: 1.0.into(),
                 reaction: (k == 0).then(|| 123456.0.into()),
                 imbalance: 1e-12 * k as f64,
-                moment_imbalance: None,
+                ..BodyBalance::default()
             })
             .collect(),
         load_steps: Vec::new(),
