@@ -1,9 +1,9 @@
 //! Equilibrium of every body: loads, springs, forces on interfaces and obstacles, and reactions. In elasticity it is by
 //! components, and with moments.
 //!
-//! Reactions are what K u leaves at given values, as the forces that a deck prints (RF): the elements say them, not what
-//! the other forces lack. So the balance of a held body tests the solution as that of a loose one does. If it passes,
-//! what the iteration has left is taken from the reactions.
+//! Reactions are what K u leaves at given values, as the forces that a deck prints (RF): the elements say them, not
+//! what the other forces lack. So the balance of a held body tests the solution as that of a loose one does. If it
+//! passes, what the iteration has left is taken from the reactions.
 
 use super::row_forces::RowForces;
 use crate::linalg::sorted::distinct;
@@ -178,10 +178,10 @@ const ROUNDING: f64 = 1e-12;
 
 /// What the iteration leaves.
 ///
-/// For a motion v of a body as a whole that is zero at given values, the imbalance along it is vᵀ (K u − f + Bᵀ λ): with
-/// the errors of u and λ at most a few times ‖u − u*‖_K ‖v‖_K (docs/theory.md, section 8). A stiff body that bears little
-/// has a large ‖v‖_K, and its reaction few digits; bodies that nothing holds have none but rounding, since the iteration
-/// keeps Gᵀ λ = e.
+/// For a motion v of a body as a whole that is zero at given values, the imbalance along it is vᵀ (K u − f + Bᵀ λ):
+/// with the errors of u and λ at most a few times ‖u − u*‖_K ‖v‖_K (docs/theory.md, section 8). A stiff body that bears
+/// little has a large ‖v‖_K, and its reaction few digits; bodies that nothing holds have none but rounding, since the
+/// iteration keeps Gᵀ λ = e.
 struct Error {
     /// What is permitted relative to the forces.
     relative: f64,

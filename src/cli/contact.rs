@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::smoothed::smoothed;
 use crate::contact::Step;
 use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
@@ -9,7 +10,7 @@ use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep, Sli
 use crate::report::plots::profile::Profile;
 use crate::scene::sliding::Sliding;
 use crate::scene::{Scene, Shape};
-use crate::substructures::{RowSource, SolvedRow};
+use crate::substructures::{BodyNode, RowSource, SolvedRow};
 use crate::Solution;
 
 /// All rows on rank 0, ordered by interface and t; empty on the other ranks. Collective.
@@ -29,12 +30,17 @@ pub(super) fn by_source(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]
     rows.chunk_by(move |a, b| a.label.source == b.label.source || equation(a) && equation(b))
 }
 
-/// For rows from one source: the body of their first member, and its side on which they lie. `None` where bodies meet
-/// in less than a side.
+/// For rows from one source: the body of the nodes with multipliers, and its side on which they lie. `None` where
+/// bodies meet in less than a side.
 pub(super) fn side(scene: &Scene, rows: &[SolvedRow]) -> Option<(usize, usize)> {
     let first = rows.first()?;
-    let body = first.body()?;
+    let body = carrier(scene, first)?.body;
     Some((body, scene.side_of(first.label.source, body)?))
+}
+
+/// The node with the multiplier of a row.
+pub(super) fn carrier(scene: &Scene, row: &SolvedRow) -> Option<BodyNode> {
+    row.label.members[scene.carrier(row.label.source)]
 }
 
 pub(super) fn name(scene: &Scene, source: RowSource) -> String {
@@ -115,13 +121,31 @@ fn pressures<'a>(
     some.then(|| contact().filter_map(SolvedRow::pressure))
 }
 
-/// The rows of each interface or obstacle that has inequalities.
-pub(super) fn with_inequalities(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]> {
-    by_source(rows).filter(|rows| rows.iter().any(|r| r.is_inequality()))
+/// The rows of each interface or obstacle that has inequalities, with their smoothed pressures, if there are some.
+pub(super) fn with_inequalities<'a>(
+    scene: &'a Scene,
+    rows: &'a [SolvedRow],
+) -> impl Iterator<Item = (&'a [SolvedRow], Vec<f64>)> {
+    let (pressures, found) = smoothed(scene, rows);
+    let mut done = 0;
+    let groups = by_source(rows).map(move |rows| {
+        let first = done;
+        done += rows.len();
+        let some = found
+            .iter()
+            .any(|o| rows[0].label.source == RowSource::Interface(o.interface));
+        let own = if some { first..done } else { 0..0 };
+        (rows, pressures[own].to_vec())
+    });
+    groups.filter(|(rows, _)| rows.iter().any(|r| r.is_inequality()))
 }
 
 /// The nodes of one interface or obstacle, with their areas if `areas` is set.
-pub(super) fn nodes(scene: &Scene, rows: &[SolvedRow], areas: bool) -> InterfaceNodes {
+pub(super) fn nodes(
+    scene: &Scene,
+    (rows, smoothed): (&[SolvedRow], Vec<f64>),
+    areas: bool,
+) -> InterfaceNodes {
     let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     InterfaceNodes {
         name: name(scene, rows[0].label.source),
@@ -135,12 +159,13 @@ pub(super) fn nodes(scene: &Scene, rows: &[SolvedRow], areas: bool) -> Interface
         } else {
             Vec::new()
         },
+        smoothed,
     }
 }
 
 /// The profiles of multiplier and gap along every interface that has inequalities.
 pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
-    let profile = |rows: &[SolvedRow]| {
+    let profile = |(rows, smoothed): (&[SolvedRow], Vec<f64>)| {
         let along = match rows[0].label.source {
             RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
             RowSource::Equation(_) => 0,
@@ -153,11 +178,11 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
         let body = rows[0].body();
         let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
         Profile {
-            nodes: nodes(scene, rows, scene.has_pressure()),
+            nodes: nodes(scene, (rows, smoothed), scene.has_pressure()),
             label: if curved { "t" } else { ["x", "y"][along] }.into(),
         }
     };
-    with_inequalities(rows).map(profile).collect()
+    with_inequalities(scene, rows).map(profile).collect()
 }
 
 /// The record of one outer step in the report.

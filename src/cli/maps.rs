@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::contact::{nodes, side, with_inequalities};
+use super::contact::{carrier, nodes, side, with_inequalities};
 use crate::mesh::CellKind;
 use crate::report::pictures::contact_map::ContactMap;
 use crate::report::pictures::pieces::pieces;
@@ -15,12 +15,12 @@ const STEEP: f64 = 0.4;
 
 /// The maps of all interfaces and obstacles that have inequalities.
 pub(super) fn of(scene: &Scene, rows: &[SolvedRow]) -> Vec<ContactMap> {
-    with_inequalities(rows)
-        .map(|rows| map(scene, rows))
+    with_inequalities(scene, rows)
+        .map(|(rows, smoothed)| map(scene, rows, smoothed))
         .collect()
 }
 
-fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
+fn map(scene: &Scene, rows: &[SolvedRow], smoothed: Vec<f64>) -> ContactMap {
     let along = |d: usize| {
         let least = |a: f64, r: &SolvedRow| a.min(r.normal()[d].abs());
         rows.iter()
@@ -47,7 +47,7 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
         let spec = &scene.bodies[body].spec;
         let numbered = rows.iter().enumerate();
         let of: HashMap<usize, u32> = numbered
-            .filter_map(|(k, r)| Some((r.node()?, k as u32)))
+            .filter_map(|(k, r)| Some((carrier(scene, r)?.node, k as u32)))
             .collect();
         for face in spec.faces(side) {
             let nodes: Vec<usize> = match face.kind {
@@ -62,7 +62,7 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
         }
     }
     ContactMap {
-        nodes: nodes(scene, rows, true),
+        nodes: nodes(scene, (rows, smoothed), true),
         labels,
         at,
         cells,

@@ -24,6 +24,7 @@ mod renewed;
 mod row_forces;
 mod searches;
 mod single;
+mod smoothed;
 mod solve;
 mod study;
 mod table1;

@@ -11,7 +11,7 @@ use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::record::{checks, report};
 use super::values::Values;
-use super::{doubts, inputs, maps, picture};
+use super::{doubts, inputs, maps, picture, smoothed};
 use crate::checkpoint::Checkpoints;
 use crate::feti::MethodSettings;
 use crate::mesh::deck;
@@ -167,6 +167,9 @@ fn solve(
         report.inputs = inputs::of(&args.scene);
     }
     report.warnings.extend(course.unbalanced.clone());
+    report
+        .warnings
+        .extend(smoothed::warnings(scene, &course.rows));
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {

@@ -30,8 +30,8 @@ pub struct Held {
     pub energies: Vec<f64>,
 }
 
-/// K u at given values, and vᵀ K v of some `motions` that are zero at free degrees of freedom. Only elements beside given
-/// values are looked at.
+/// K u at given values, and vᵀ K v of some `motions` that are zero at free degrees of freedom. Only elements beside
+/// given values are looked at.
 pub fn force_at_given(mesh: &SubdomainMesh, nodal: &[f64], motions: &[Vec<f64>]) -> Held {
     let given = |k: usize| mesh.dof[k] == SubdomainMesh::PRESCRIBED;
     let of_all = (0..mesh.dof.len()).filter(|&k| given(k));

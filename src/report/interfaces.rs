@@ -21,6 +21,8 @@ pub struct InterfaceNodes {
     /// The part of the side that belongs to the node: in the plane a length. Empty if forces are not reported as
     /// pressures.
     pub area: Vec<f64>,
+    /// Pressures without oscillations; empty where they are none but those of the forces.
+    pub smoothed: Vec<f64>,
 }
 
 impl InterfaceNodes {
@@ -38,6 +40,7 @@ impl InterfaceNodes {
             (self.multiplier.len(), "multipliers"),
             (self.active.len(), "states"),
             (areas, "areas"),
+            (self.smoothed.len().max(n), "smoothed pressures"),
         ];
         match lists.iter().chain(more).find(|list| list.0 != n) {
             None => Ok(()),
@@ -60,6 +63,14 @@ impl InterfaceNodes {
             .collect()
     }
 
+    /// The pressures that pictures show: the smoothed ones where there are some.
+    pub(super) fn shown_pressure(&self) -> Vec<f64> {
+        match self.smoothed.is_empty() {
+            true => self.pressure(),
+            false => self.smoothed.clone(),
+        }
+    }
+
     /// Sum of the multipliers.
     pub fn force(&self) -> f64 {
         self.multiplier.iter().sum()
@@ -67,9 +78,11 @@ impl InterfaceNodes {
 }
 
 /// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area;
-/// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures.
+/// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures. Where an
+/// interface has smoothed pressures, all of them have a column pressure_smoothed.
 pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
     let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
+    let smoothed = interfaces.iter().any(|(i, _)| !i.smoothed.is_empty());
     let nodes = interfaces.iter();
     let nodes = nodes.flat_map(|(i, pressure)| (0..i.t.len()).map(move |k| (*i, pressure, k)));
     Table::of(nodes)
@@ -84,6 +97,11 @@ pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, soli
         .exact("active", |(i, _, k)| u8::from(i.active[*k]))
         .exact("pressure", |(_, pressure, k)| pressure.get(*k).copied())
         .exact("area", |(i, _, k)| i.area.get(*k).copied())
+        .when(smoothed, |t| {
+            t.exact("pressure_smoothed", |(i, pressure, k)| {
+                i.smoothed.get(*k).or(pressure.get(*k)).copied()
+            })
+        })
         .table()
 }
 

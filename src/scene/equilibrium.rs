@@ -114,8 +114,8 @@ impl Scene {
         Ok(out)
     }
 
-    /// The motions of nodes as a whole: along the components, and in elasticity turns. Rings move along their axis alone,
-    /// but all of them are there.
+    /// The motions of nodes as a whole: along the components, and in elasticity turns. Rings move along their axis
+    /// alone, but all of them are there.
     fn motions(&self, arms: &[[f64; 3]]) -> Vec<Vec<f64>> {
         let c = self.components();
         let along = |d: usize, i: usize| f64::from(i == d);

@@ -67,7 +67,7 @@ pub struct RowLabel {
     pub source: RowSource,
     /// The nodes in the order of the row, including nodes with a given value; an obstacle has one node.
     pub members: [Option<BodyNode>; 2],
-    /// Position of the first node; 0 if it is not known.
+    /// Position of the first node, or of the one that carries the multiplier; 0 if it is not known.
     pub point: [f64; 3],
     /// Parameters along the common face or the side, 0 ≤ t ≤ 1; the second is 0 in the plane.
     pub t: [f64; 2],

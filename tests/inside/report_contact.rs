@@ -119,6 +119,7 @@ impl Bodies {
                 multiplier: shape.iter().map(|v| scale * v.max(0.0)).collect(),
                 active: shape.iter().map(|&v| v > 0.0).collect(),
                 area: Vec::new(),
+                smoothed: Vec::new(),
             };
             Profile {
                 nodes,

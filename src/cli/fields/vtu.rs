@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{Gathered, Place};
 use crate::cli::first_rank::on_first_rank;
+use crate::cli::smoothed::smoothed;
 use crate::fem::cell::CellStress;
 use crate::fem::element::{principal_stresses, NodeStress};
 use crate::fem::recovery::components;
@@ -120,12 +121,19 @@ impl Gathered {
         if scene.has_pressure() {
             fields = fields.with_areas();
         }
-        for row in rows.iter().filter(|r| r.is_inequality()) {
+        // The pieces of a grid have the same arrays.
+        if scene.has_pressure() && scene.mortar.iter().any(|m| m.inequality.is_some()) {
+            fields = fields.with_smoothed();
+        }
+        let (smoothed, _) = smoothed(scene, rows);
+        let inequalities = rows.iter().zip(smoothed).filter(|(r, _)| r.is_inequality());
+        for (row, smoothed) in inequalities {
             for member in row.label.members.iter().flatten() {
                 for &p in copies.get(member).into_iter().flatten() {
                     fields.add(p, row.multiplier, row.gap, row.holds())?;
                     if scene.has_pressure() {
                         fields.add_area(p, row.label.area)?;
+                        fields.add_smoothed(p, smoothed * row.label.area);
                     }
                 }
             }

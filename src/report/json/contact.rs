@@ -218,8 +218,8 @@ pub struct BodyBalance {
     pub springs: Option<Amount>,
     /// Resultant of the forces on its interfaces, at its obstacles and in its equations.
     pub contact: Amount,
-    /// Resultant of the reactions at prescribed displacements, as the elements have them, less what the iteration leaves
-    /// (`imbalance`) where that is within the tolerance; `null` for a body without any.
+    /// Resultant of the reactions at prescribed displacements, as the elements have them, less what the iteration
+    /// leaves (`imbalance`) where that is within the tolerance; `null` for a body without any.
     pub reaction: Option<Amount>,
     /// What the forces leave, relative to the largest sum of the sizes of loads, springs, contacts or reactions; of
     /// rings along the axis.

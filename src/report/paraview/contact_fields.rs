@@ -23,6 +23,8 @@ pub struct ContactFields {
     area: Vec<f64>,
     /// `multiplier` over `area`.
     pressure: Vec<f64>,
+    /// Forces of smoothed pressures, then these over `area`; `None`: none are smoothed.
+    smoothed: Option<Vec<f64>>,
     /// Whether there are pressures, also where no candidate is.
     has_pressure: bool,
 }
@@ -37,6 +39,7 @@ impl ContactFields {
             candidate: vec![0; points],
             area: Vec::new(),
             pressure: Vec::new(),
+            smoothed: None,
             has_pressure: false,
         }
     }
@@ -46,6 +49,21 @@ impl ContactFields {
     pub fn with_areas(mut self) -> Self {
         self.begin_areas();
         self
+    }
+
+    /// The same with smoothed pressures beside them.
+    #[must_use]
+    pub fn with_smoothed(mut self) -> Self {
+        self.smoothed = Some(vec![0.0; self.multiplier.len()]);
+        self
+    }
+
+    /// Adds the force of a smoothed pressure to a point.
+    pub fn add_smoothed(&mut self, point: usize, force: f64) {
+        let to = self.smoothed.as_mut().and_then(|s| s.get_mut(point));
+        if let Some(to) = to.filter(|_| force.is_finite()) {
+            *to += force;
+        }
     }
 
     fn begin_areas(&mut self) {
@@ -103,6 +121,10 @@ impl ContactFields {
                 *pressure = self.multiplier[p] / self.area[p];
             }
         }
+        let divided = self.smoothed.iter_mut().flatten().zip(&self.area);
+        divided
+            .filter(|(_, area)| **area > 0.0)
+            .for_each(|(force, area)| *force /= area);
     }
 
     /// The grid with the arrays attached as point data.
@@ -111,6 +133,10 @@ impl ContactFields {
         let grid = match self.has_pressure {
             true => grid.point_data("contact_pressure", 1, &self.pressure[..]),
             false => grid,
+        };
+        let grid = match &self.smoothed {
+            Some(smoothed) => grid.point_data("contact_pressure_smoothed", 1, &smoothed[..]),
+            None => grid,
         };
         grid.point_data("multiplier", 1, &self.multiplier[..])
             .point_data("gap", 1, &self.gap[..])

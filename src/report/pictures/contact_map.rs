@@ -152,7 +152,7 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
     );
     let middle = (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT);
     raster.text(middle, &name, &TextStyle::title(TEXT));
-    let pressure = map.nodes.pressure();
+    let pressure = map.nodes.shown_pressure();
     let field = Field::nodal("pressure", &pressure);
     // The range always contains zero, the value outside contact.
     let (least, most) = field.range();

@@ -129,7 +129,7 @@ impl Profile {
             (low.min(-0.05 * (high - low)), high)
         };
         let (what, force) = if self.nodes.has_pressure() {
-            ("pressure", &self.nodes.pressure())
+            ("pressure", &self.nodes.shown_pressure())
         } else {
             ("multiplier", &self.nodes.multiplier)
         };

@@ -45,10 +45,15 @@ pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
     out
 }
 
-/// The contact pairs that do not tie; soft laws are hard here.
-pub(super) fn contacts(deck: &Deck, numbers: &Numbers) -> Result<Vec<ContactSpec>> {
+/// The contact pairs that do not tie; soft laws are hard here. The masters of those that are `exchanged` carry the
+/// multipliers.
+pub(super) fn contacts(
+    deck: &Deck,
+    numbers: &Numbers,
+    exchanged: &[Option<f64>],
+) -> Result<Vec<ContactSpec>> {
     let mut out = Vec::new();
-    for pair in &deck.contacts {
+    for (pair, exchanged) in deck.contacts.iter().zip(exchanged) {
         let interaction = &deck.interactions[pair.interaction as usize];
         if matches!(interaction.overclosure, Overclosure::Tied { .. }) {
             continue;
@@ -64,8 +69,8 @@ pub(super) fn contacts(deck: &Deck, numbers: &Numbers) -> Result<Vec<ContactSpec
             extent: Extent::All,
             gap: Profile::constant(pair.clearance.unwrap_or(0.0)),
             distance: None,
+            multipliers: exchanged.map(|_| 1),
             // A clearance replaces the geometric gap, whatever that is.
-            multipliers: None,
             adjust: if pair.clearance.is_some() {
                 f64::INFINITY
             } else {

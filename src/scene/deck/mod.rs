@@ -4,6 +4,7 @@
 //! describes one step of the deck at its end; steps of a linear analysis do not depend on each other.
 
 mod bodies;
+mod carriers;
 mod joints;
 mod numbers;
 mod torn;
@@ -35,6 +36,8 @@ pub struct DeckScenes {
     in_full: bool,
     /// A sentence for each kind of defect in its mesh, and on what was turned in it.
     torn: Vec<String>,
+    /// For each contact pair the ratio by which its slave is finer, where its master carries the multipliers.
+    exchanged: Vec<Option<f64>>,
 }
 
 impl DeckScenes {
@@ -74,6 +77,7 @@ impl DeckScenes {
         let mut torn = torn::notes(&deck, &numbers, &meshes);
         torn.extend(clockwise(&deck, &turned));
         Ok(DeckScenes {
+            exchanged: carriers::exchanged(&deck),
             deck,
             numbers,
             meshes,
@@ -94,7 +98,8 @@ impl DeckScenes {
         &self.deck
     }
 
-    /// What of the deck is ignored, solved as something else or left out, and where its mesh is torn: a sentence each.
+    /// What of the deck is ignored, solved as something else or left out, where its mesh is torn, and which surfaces
+    /// have exchanged their roles: a sentence each.
     pub fn notes(&self) -> Vec<String> {
         let deck = &self.deck;
         let line = |what: &str, note: &deck::Note| {
@@ -106,7 +111,8 @@ impl DeckScenes {
         let unused = deck.mesh.unused(deck.dim(), &[]);
         let torn = self.torn.iter().cloned();
         let all = ignored.chain(replaced).chain(unused);
-        all.chain(torn).collect()
+        let exchanged = carriers::notes(deck, &self.exchanged);
+        all.chain(torn).chain(exchanged).collect()
     }
 
     /// Number of steps, ≥ 1.
@@ -150,7 +156,7 @@ impl DeckScenes {
             form,
             default: ByDefault::Free,
             ties: joints::ties(deck),
-            contacts: joints::contacts(deck, numbers)?,
+            contacts: joints::contacts(deck, numbers, &self.exchanged)?,
             equations,
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)

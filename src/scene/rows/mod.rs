@@ -17,8 +17,8 @@
 //! match from `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
 //! at the points that a rank's bodies reach (`reach`), [`table`] the fourth. Normals and distances are computed once,
 //! with the second form, and areas ([`areas`]) with the label; reports, studies and C read them in the solved row. A
-//! load step evaluates only the right-hand sides of the third form ([`points::PointRow::right_hand_side`]). Balances and
-//! forces at nodes take all terms of a row from [`terms`], those of given values among them.
+//! load step evaluates only the right-hand sides of the third form ([`points::PointRow::right_hand_side`]). Balances
+//! and forces at nodes take all terms of a row from [`terms`], those of given values among them.
 
 pub mod all;
 pub mod areas;

@@ -113,11 +113,12 @@ impl Scene {
     }
 
     fn mortar_label(&self, row: &MortarRow) -> RowLabel {
-        let first = row.members[0].expect("every row has a first member");
+        let carrier = row.members[self.carrier(row.source)];
+        let carrier = carrier.expect("the node with the multiplier is a member");
         RowLabel {
             source: row.source,
             members: row.members,
-            point: first.position(&self.bodies),
+            point: carrier.position(&self.bodies),
             t: self.t(row.source, row.node),
             normal: row.direction,
             area: match row.inequality.is_some() && self.has_pressure() {
@@ -125,6 +126,16 @@ impl Scene {
                 false => 0.0,
             },
         }
+    }
+
+    /// The number of the member that carries the multiplier of rows from a source: the first, where nodes match.
+    pub fn carrier(&self, source: RowSource) -> usize {
+        let RowSource::Interface(k) = source else {
+            return 0;
+        };
+        let interface = &self.interfaces[k];
+        let own = interface.mortar.as_ref().map(|m| m.multipliers);
+        usize::from(own.is_some_and(|own| own != interface.order[0]))
     }
 
     /// The parameters of a node of the interface or obstacle of a row.

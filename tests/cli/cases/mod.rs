@@ -5,6 +5,7 @@ mod cells;
 mod energy;
 mod motions;
 mod pins;
+mod pressures;
 mod slack;
 
 use crate::support::mpi::{Output, Scratch};

@@ -15,6 +15,7 @@ fn sample(name: &str, n: usize, size: f64) -> Profile {
         multiplier: t.iter().map(|&t| pressure(t)).collect(),
         active: t.iter().map(|&t| pressure(t) > 0.0).collect(),
         area: Vec::new(),
+        smoothed: Vec::new(),
         t: t.iter().map(|&t| [t, 0.0]).collect(),
     };
     Profile {
