@@ -184,7 +184,7 @@ impl FetiFeti {
     /// factored; jump operator, coarse problems and preconditioner are set up anew. Collective.
     ///
     /// # Errors
-    /// As [`FetiFeti::new`].
+    /// As [`FetiFeti::new`]; the solver then still has the old rows and works with them.
     pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
         let _staged = self.setup_stage.scope()?;
         self.method.set_rows(rows)

@@ -52,10 +52,7 @@ impl Object {
             true => {
                 let made = self.all_rows(&|dof| solver.is_known(dof));
                 match made {
-                    Ok((rows, mortars)) => {
-                        self.mortar_rows = mortars;
-                        Some(rows)
-                    }
+                    Ok(made) => Some(made),
                     Err(error) => {
                         self.solver = Some(solver);
                         return Err(error);
@@ -63,9 +60,13 @@ impl Object {
                 }
             }
         };
+        let (rows, mortars) = rows.unzip();
         if !changed.matrices {
-            solver.set_rows(rows.unwrap_or_default())?;
+            // After an error the solver has the old rows.
+            let set = solver.set_rows(rows.unwrap_or_default());
             self.solver = Some(solver);
+            set?;
+            self.mortar_rows = mortars.unwrap_or_default();
             return Ok(Some(SetUp::Rows));
         }
         let renewed = {
@@ -79,6 +80,9 @@ impl Object {
             None => self.whole(),
             Some(solver) => {
                 self.solver = Some(solver);
+                if let Some(mortars) = mortars {
+                    self.mortar_rows = mortars;
+                }
                 Ok(Some(SetUp::Numbers))
             }
         }

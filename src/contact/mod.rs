@@ -27,6 +27,7 @@ mod rigid;
 mod settings;
 mod settle;
 mod smalbe;
+mod springs;
 mod state;
 
 pub use settings::{ContactSettings, ContactStart, ContactType};
@@ -38,11 +39,22 @@ use crate::status::Status;
 use crate::Result;
 use active_set::Ended;
 
-/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. Collective.
+/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
+/// the method hold that held before. Collective.
 ///
 /// # Errors
 /// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
 pub(crate) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    start: Option<&State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    method.with_rows_kept(|| judged(method, settings, start, observe))
+}
+
+/// Runs of the loop until all rows are on the right side. Collective.
+fn judged(
     method: &LinearMethod,
     settings: &ContactSettings,
     start: Option<&State>,

@@ -16,6 +16,7 @@ use super::motion;
 use super::restore::restore;
 use super::settings::ContactType;
 use super::settle::settle;
+use super::springs::Springs;
 use super::state::{changes, State, Step};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
@@ -66,6 +67,7 @@ pub enum Came {
 /// The data of the search.
 pub struct Search<'a> {
     method: &'a LinearMethod,
+    springs: Springs<'a>,
     at: Iterate,
     /// Whether each owned row is an inequality.
     counts: Vec<bool>,
@@ -118,6 +120,7 @@ impl<'a> Search<'a> {
             few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)) as usize,
             last: None,
             least: method.least_residual(),
+            springs: Springs::of(method),
             method,
         };
         drop(dual);
@@ -135,13 +138,12 @@ impl<'a> Search<'a> {
 
     /// Makes the rows rigid again, for the active-set method.
     pub fn rigid(&self) {
-        self.method.system.set_compliance(None);
+        self.springs.rigid();
     }
 
     /// Makes the rows springs again, as stiff as before.
     pub fn soften(&self) {
-        let compliance = Some(self.compliance.clone());
-        self.method.system.set_compliance(compliance);
+        self.springs.soften(&self.compliance);
     }
 
     /// μ ← (s)₊, and the set of the rows with μ > 0. Ends a minimisation.

@@ -78,8 +78,7 @@ impl Embedded {
     /// about the same node as an earlier one start from its multiplier. Collective.
     ///
     /// # Errors
-    /// A row with a dof that no subdomain has; then nothing has changed. What [`FetiFeti::set_rows`] says; the solver
-    /// is of no use after it.
+    /// A row with a dof that no subdomain has, and what [`FetiFeti::set_rows`] says; then nothing has changed.
     pub fn set_rows(&mut self, given: Vec<GivenRow>) -> Result<()> {
         let new = self.replaced(given)?;
         self.solver.get_mut().set_rows(new.rows)?;
@@ -94,7 +93,7 @@ impl Embedded {
     /// structure that was found for the present ones: everything has to be set up anew. Collective.
     ///
     /// # Errors
-    /// As [`Embedded::set_rows`].
+    /// As [`Embedded::set_rows`]; the solver is gone.
     pub fn renewed(
         mut self,
         given: &[Local<'_>],

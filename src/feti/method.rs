@@ -10,6 +10,7 @@ use super::krylov::system::System;
 use super::krylov::tally::Communication;
 use super::operators::dual::Dual;
 use super::settings::MethodSettings;
+use super::setup::Made;
 use super::subdomain::kept::Kept;
 use crate::cholesky::interior::Analysed;
 use crate::parallel::exchange::any;
@@ -68,7 +69,7 @@ impl LinearMethod {
     }
 
     /// Replaces the rows between bodies that this rank provides. Subdomains whose interface stays the same stay
-    /// factored, all else is set up anew. Collective.
+    /// factored, all else is set up anew. After an error the old rows are there as they were. Collective.
     ///
     /// # Errors
     /// Bad rows, a body that nothing holds, PETSc's own errors; the same on all ranks.
@@ -77,19 +78,17 @@ impl LinearMethod {
         // Adaptive constraints have changed the operators of subdomains.
         let kept = self.kept();
         let kept = if adapted { kept.patterns() } else { kept };
-        let problem = Substructures {
-            local: std::mem::take(&mut self.problem.local),
-            body_names: std::mem::take(&mut self.problem.body_names),
-            weak: std::mem::take(&mut self.problem.weak),
-            rows,
-            ..self.problem
-        };
-        let (length, seconds) = (self.length.get(), self.facts.setup_seconds);
-        let settings = self.settings.clone();
-        *self = LinearMethod::keeping(&self.session.clone(), problem, settings, Some(&kept))?;
-        self.length.set(length);
-        self.facts.setup_seconds += seconds;
-        Ok(())
+        let before = std::mem::replace(&mut self.problem.rows, rows);
+        match Made::new(&self.session, &self.problem, &self.settings, Some(&kept)) {
+            Ok(made) => {
+                self.take(made);
+                Ok(())
+            }
+            Err(error) => {
+                self.problem.rows = before;
+                Err(error)
+            }
+        }
     }
 
     /// The same problem with other numbers in all matrices, and with other rows if there are some. Patterns are not
@@ -146,6 +145,32 @@ impl LinearMethod {
     /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.
     pub(crate) fn set_active(&self, active: &[bool]) -> Result<usize> {
         self.system.set_active(&self.problem, active)
+    }
+
+    /// Does `work`, which may change Z^k. Z^k is then what it was before, whether `work` succeeds or not. Collective.
+    ///
+    /// # Errors
+    /// Those of `work`; PETSc's own.
+    pub(crate) fn with_rows_put_back<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let before = self.dual().stiffness.jump.active.clone();
+        let done = work();
+        let put_back = self.set_active(&before);
+        // What `work` says is the reason, if both fail.
+        let done = done?;
+        put_back?;
+        Ok(done)
+    }
+
+    /// The same, but Z^k stays where `work` has brought it if it succeeds. Collective.
+    ///
+    /// # Errors
+    /// Those of `work`.
+    pub(crate) fn with_rows_kept<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let before = self.dual().stiffness.jump.active.clone();
+        work().inspect_err(|_| {
+            // The error of `work` is the one that counts.
+            let _ = self.set_active(&before);
+        })
     }
 
     /// The identities of the theory, each with its relative defect, which must be of the size of rounding. Collective.

@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
 use mpi::traits::Communicator;
@@ -30,6 +31,7 @@ use super::settings::{MethodSettings, PcType, Scaling};
 use super::subdomain::factor::{factor, no_factor, Factored};
 use super::subdomain::kept::Kept;
 use super::subdomain::scaled::Scaled;
+use crate::cholesky::interior::Analysed;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
@@ -39,6 +41,15 @@ use crate::{Error, Result};
 
 /// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;
+
+/// What the set-up makes of a problem: all of a [`LinearMethod`] that follows from the rows.
+pub(super) struct Made {
+    system: Rc<System>,
+    ksp: Ksp,
+    facts: Facts,
+    varies: f64,
+    analysed: Vec<Option<Arc<Analysed>>>,
+}
 
 /// Number of adaptive primal constraints of each body, and the seconds for finding them.
 struct Added {
@@ -70,69 +81,96 @@ impl LinearMethod {
         settings: MethodSettings,
         kept: Option<&Kept>,
     ) -> Result<LinearMethod> {
-        let clock = Instant::now();
-        let comm = session.comm();
-        session.agree(entities::check(&problem, settings.primal))?;
-        session.agree(location::check(comm, &problem))?;
-        let scaling = settings
-            .scaling
-            .unwrap_or_else(|| choice::scaling(&problem));
-        let weights = weights(&problem, scaling, settings.gamma);
-        let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
-        drop(weights);
-        let many = settings.coupled;
-        let mut jump = Jump::coupling(comm, &problem, &sharing, many); /*     B, B_D                 */
-        let mut team = Team::new(threads(session, &settings))?;
-        let kind = settings.pc_type.unwrap_or_else(|| {
-            choice::preconditioner(comm, &problem, &sharing, &jump, settings.coarse_functions())
-        });
-        let (Factored { locals, analysed }, added) = subdomains(
-            session,
-            &problem,
-            &sharing,
-            &mut jump,
-            &team,
-            (kind, scaling, &settings, kept),
-        )?; /* S, T, Ψ */
-        let varies = variation::varies(comm, &problem);
-        team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
-        let stiffness = stiffness(
-            session,
-            &problem,
-            &sharing,
-            jump,
-            locals,
-            (team, varies, &settings, kept),
-        )?; /* S̃⁺, F */
-        let lifting = match kind {
-            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
-                let functions = settings.coarse_functions();
-                Lifting::new(&problem, &sharing, &stiffness, functions)
-                /* Z_c               */
-            })?,
-            _ => None,
-        };
-        let preconditioner = Preconditioner::new(
-            comm,
-            kind,
-            &problem,
-            &stiffness,
-            lifting,
-            settings.precision,
-        ); /* M⁻¹ */
-        let natural = clock::timed(Phase::NaturalSetup, || {
-            let projector = (settings.projector, varies, settings.gtg_redundancy);
-            let prefix = format!("{}gtg_", settings.prefix);
-            NaturalCoarse::new(&problem, &stiffness, &preconditioner, projector, &prefix)
-        })?; /*                                                                 G, P                   */
-        let dual = Dual::new(stiffness, preconditioner, natural)?;
-        let facts = Facts::new(comm, &dual, scaling);
-        let system = Rc::new(System::new(session, dual, settings.recycle)?);
-        let ksp = krylov(session, &system, &settings)?;
+        let made = Made::new(session, &problem, &settings, kept)?;
         Ok(LinearMethod {
             session: session.clone(),
             problem,
             settings,
+            system: made.system,
+            ksp: made.ksp,
+            facts: made.facts,
+            length: Cell::new(0.0),
+            varies: made.varies,
+            worth: OnceCell::new(),
+            declined: Cell::new(0.0),
+            analysed: made.analysed,
+        })
+    }
+
+    /// Takes what a set-up for other rows has made in the place of what there is. The size of solutions, and the time
+    /// that set-ups have taken, go on.
+    pub(super) fn take(&mut self, made: Made) {
+        let seconds = self.facts.setup_seconds;
+        (self.system, self.ksp, self.facts) = (made.system, made.ksp, made.facts);
+        (self.varies, self.analysed) = (made.varies, made.analysed);
+        (self.worth, self.declined) = (OnceCell::new(), Cell::new(0.0));
+        self.facts.setup_seconds += seconds;
+    }
+}
+
+impl Made {
+    /// Factors, assembles the coarse problems and sets the Krylov method up; see [`LinearMethod::keeping`]. Collective.
+    ///
+    /// # Errors
+    /// As [`LinearMethod::new`].
+    pub(super) fn new(
+        session: &Session,
+        problem: &Substructures,
+        settings: &MethodSettings,
+        kept: Option<&Kept>,
+    ) -> Result<Made> {
+        let clock = Instant::now();
+        let comm = session.comm();
+        session.agree(entities::check(problem, settings.primal))?;
+        session.agree(location::check(comm, problem))?;
+        let scaling = settings.scaling.unwrap_or_else(|| choice::scaling(problem));
+        let weights = weights(problem, scaling, settings.gamma);
+        let sharing = session.agree(Sharing::new(comm, problem, &weights, settings.primal))?;
+        drop(weights);
+        let many = settings.coupled;
+        let mut jump = Jump::coupling(comm, problem, &sharing, many); /*      B, B_D                 */
+        let mut team = Team::new(threads(session, settings))?;
+        let kind = settings.pc_type.unwrap_or_else(|| {
+            choice::preconditioner(comm, problem, &sharing, &jump, settings.coarse_functions())
+        });
+        let (Factored { locals, analysed }, added) = subdomains(
+            session,
+            problem,
+            &sharing,
+            &mut jump,
+            &team,
+            (kind, scaling, settings, kept),
+        )?; /* S, T, Ψ */
+        let varies = variation::varies(comm, problem);
+        team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
+        let stiffness = stiffness(
+            session,
+            problem,
+            &sharing,
+            jump,
+            locals,
+            (team, varies, settings, kept),
+        )?; /* S̃⁺, F */
+        let lifting = match kind {
+            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
+                let functions = settings.coarse_functions();
+                Lifting::new(problem, &sharing, &stiffness, functions)
+                /* Z_c               */
+            })?,
+            _ => None,
+        };
+        let preconditioner =
+            Preconditioner::new(comm, kind, problem, &stiffness, lifting, settings.precision); /* M⁻¹ */
+        let natural = clock::timed(Phase::NaturalSetup, || {
+            let projector = (settings.projector, varies, settings.gtg_redundancy);
+            let prefix = format!("{}gtg_", settings.prefix);
+            NaturalCoarse::new(problem, &stiffness, &preconditioner, projector, &prefix)
+        })?; /*                                                                 G, P                   */
+        let dual = Dual::new(stiffness, preconditioner, natural)?;
+        let facts = Facts::new(comm, &dual, scaling);
+        let system = Rc::new(System::new(session, dual, settings.recycle)?);
+        let ksp = krylov(session, &system, settings)?;
+        Ok(Made {
             system,
             ksp,
             facts: Facts {
@@ -141,10 +179,7 @@ impl LinearMethod {
                 setup_seconds: clock.elapsed().as_secs_f64(),
                 ..facts
             },
-            length: Cell::new(0.0),
             varies,
-            worth: OnceCell::new(),
-            declined: Cell::new(0.0),
             analysed,
         })
     }

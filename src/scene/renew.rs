@@ -30,7 +30,7 @@ impl Scene {
     /// [`FetiFeti::set_rows`](crate::FetiFeti::set_rows) takes them.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) where given values contradict an inequality.
+    /// [`Error::Input`](crate::Error::Input) where given values contradict an inequality; the scene is then as it was.
     pub fn renew(&mut self, at: &Displaced, step: usize) -> Result<()> {
         let Some(renewal) = self.renewal.clone() else {
             return Ok(());
@@ -41,13 +41,15 @@ impl Scene {
             body.spec.moved = at.of(k);
             body.bounds = bounds_of(&body.spec);
         }
-        let found = renewal.on(&mut bodies, &mut self.steps, step);
+        let mut steps = self.steps.clone();
+        let found = renewal.on(&mut bodies, &mut steps, step);
         for (body, bounds) in bodies.iter_mut().zip(bounds) {
             body.spec.moved = None;
             body.bounds = bounds;
         }
         self.bodies = bodies;
         let (interfaces, obstacles, rows) = found?;
+        self.steps = steps;
         (self.interfaces, self.obstacles) = (interfaces.into(), obstacles);
         (self.points, self.mortar, self.equations) = (rows.points, rows.mortar, rows.equations);
         Ok(())

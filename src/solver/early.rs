@@ -32,11 +32,26 @@ pub type Discretisation<'a> = dyn FnMut(&[Vec<f64>]) -> Result<f64> + 'a;
 impl FetiFeti {
     /// Solves as [`FetiFeti::solve_from`] until the bound of the error in the energy norm is at most a tenth of the
     /// discretisation error, which `discretisation` estimates, or until `fetifeti_ksp_rtol` (1e-10 if it is not set) is
-    /// reached. Collective.
+    /// reached. The Krylov method keeps the tolerance at which that was; after an error it has the one that it had
+    /// before. Collective.
     ///
     /// # Errors
     /// As [`FetiFeti::solve_from`], and those of `discretisation`.
     pub fn solve_early(
+        &self,
+        start: Option<&State>,
+        observe: &mut contact::Observer,
+        discretisation: &mut Discretisation,
+    ) -> Result<Solution> {
+        let before = self.ksp().tolerances()?.0;
+        let solved = self.solve_to_accuracy(start, observe, discretisation);
+        solved.inspect_err(|_| {
+            // The error of the solve is the one that counts.
+            let _ = self.ksp().set_tolerances(Some(before), None, None, None);
+        })
+    }
+
+    fn solve_to_accuracy(
         &self,
         start: Option<&State>,
         observe: &mut contact::Observer,

@@ -6,6 +6,7 @@ mod support;
 mod bodies;
 mod certified;
 mod elastic;
+mod failed;
 mod jumps;
 mod many;
 mod mortar;

@@ -36,10 +36,15 @@ impl Admissible {
 }
 
 /// u ← u − H B_Dᵀ (B u − c) on the rows that hold, and on those that are violated, until all are satisfied; H continues
-/// into the interiors with least energy. `None` if there is no end of it. Collective.
+/// into the interiors with least energy. `None` if there is no end of it. The set of rows that hold is put back.
+/// Collective.
 pub(super) fn admissible(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option<Admissible>> {
-    let given = method.dual().stiffness.jump.active.clone();
-    let mut held = given.clone();
+    method.with_rows_put_back(|| closed(method, u))
+}
+
+/// [`admissible`], which leaves other rows held.
+fn closed(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option<Admissible>> {
+    let mut held = method.dual().stiffness.jump.active.clone();
     let mut out = u.to_vec();
     let mut found = None;
     for round in 0..=ROUNDS {
@@ -82,7 +87,6 @@ pub(super) fn admissible(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option
         }
         close(method, &gaps, &mut out)?;
     }
-    method.set_active(&given)?;
     Ok(found.map(|slack| Admissible { u: out, slack }))
 }
 
@@ -149,10 +153,14 @@ fn close(method: &LinearMethod, gaps: &[f64], u: &mut [Vec<f64>]) -> Result<()> 
 }
 
 /// Multipliers near `lambda` that are not negative on inequalities and balance the loads of floating bodies. `None` if
-/// there is no end of the search. Collective.
+/// there is no end of the search. The set of rows that hold is put back. Collective.
 pub(super) fn feasible(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
-    let given = method.dual().stiffness.jump.active.clone();
-    let mut held = given.clone();
+    method.with_rows_put_back(|| pushing(method, lambda))
+}
+
+/// [`feasible`], which leaves other rows held.
+fn pushing(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
+    let mut held = method.dual().stiffness.jump.active.clone();
     let mut out = lambda.to_vec();
     let mut found = false;
     let mut load = None;
@@ -181,7 +189,6 @@ pub(super) fn feasible(method: &LinearMethod, lambda: &[f64]) -> Result<Option<V
         dual.natural.balance(dual.comm(), load, &rows)?;
         out.copy_from_slice(&rows.array()?);
     }
-    method.set_active(&given)?;
     Ok(found.then_some(out))
 }
 

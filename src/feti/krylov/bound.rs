@@ -114,19 +114,16 @@ impl LinearMethod {
     }
 
     fn deflate_candidates(&self, before: Option<Spectrum>) -> Result<()> {
-        let (candidates, now) = {
+        let candidates: Vec<bool> = {
             let dual = self.dual();
             let jump = &dual.stiffness.jump;
             let may = |i| jump.active[i] || jump.is_candidate(i);
-            let all: Vec<bool> = (0..jump.n_owned).map(may).collect();
-            (all, jump.active.clone())
+            (0..jump.n_owned).map(may).collect()
         };
-        let changed = self.set_active(&candidates)?;
-        let found = self.deflate_held(before);
-        if changed > 0 {
-            self.set_active(&now)?;
-        }
-        found
+        self.with_rows_put_back(|| {
+            self.set_active(&candidates)?;
+            self.deflate_held(before)
+        })
     }
 
     /// A first search body by body. A second one for shared modes follows only if a bound is asked for.

@@ -83,7 +83,9 @@ impl System {
     pub(crate) fn set_active(&self, problem: &Substructures, active: &[bool]) -> Result<usize> {
         let (changed, renewed) = self.dual.borrow_mut().set_active(problem, active)?;
         if let Some(deflation) = self.deflation.borrow_mut().as_mut().filter(|_| renewed) {
-            deflation.renew(&self.dual())?;
+            let done = deflation.renew(&self.dual());
+            // P_2 of another set must not stay in use.
+            done.inspect_err(|_| self.dual.borrow_mut().outdate())?;
         }
         Ok(changed)
     }
@@ -94,8 +96,11 @@ impl System {
     }
 
     /// Replaces the compliance of the rows; see [`Dual::set_compliance`]. Kept directions belong to the old operator
-    /// and are forgotten. Collective.
+    /// and are forgotten. Rows that are rigid already stay as they are. Collective.
     pub(crate) fn set_compliance(&self, compliance: Option<Vec<f64>>) {
+        if compliance.is_none() && !self.dual().stiffness.has_springs() {
+            return;
+        }
         self.recycled.borrow_mut().forget();
         self.dual.borrow_mut().set_compliance(compliance);
     }

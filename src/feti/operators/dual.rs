@@ -63,12 +63,19 @@ impl Dual {
         let changed = total(session.comm(), changed as f64);
         let renewed = changed > 0.0 || self.stale;
         if renewed {
+            // Until all has been renewed: an error must not leave operators of two sets.
+            self.stale = true;
             self.stiffness.renew_springs();
             let (stiffness, preconditioner) = (&self.stiffness, &self.preconditioner);
             self.natural.renew(problem, stiffness, preconditioner)?;
             self.stale = false;
         }
         Ok((changed as usize, renewed))
+    }
+
+    /// What is derived from the set of rows is renewed with the next one, whether or not it is another one.
+    pub(crate) fn outdate(&mut self) {
+        self.stale = true;
     }
 
     /// Changes Z^k in B and B_D alone and leaves G as it is. This is enough for M⁻¹ in a face of a bound-constrained

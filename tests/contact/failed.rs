@@ -1,0 +1,106 @@
+//! Calls that fail leave a solver that works as before.
+
+use crate::support::checks::near;
+use crate::support::session::with_session;
+use fetifeti::contact::ContactType;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use fetifeti::{Error, FetiFeti, MethodSettings, Settings, Spectrum};
+
+/// A block that floats, pressed onto another one in its middle.
+const BLOCKS: &str = "title = \"blocks\"\nphysics = \"elasticity\"\n\
+    [[body]]\nname = \"low\"\nsize = [2, 1]\nelements = [8, 4]\nsubdomains = [2, 1]\nyoung = 100\n\
+    dirichlet = [\"bottom\"]\n\
+    [[body]]\nname = \"up\"\norigin = [0, 1]\nsize = [2, 1]\nelements = [8, 4]\nsubdomains = [2, 1]\nyoung = 100\n\
+    load = [0, \"-8*(abs(x - 1) < 0.3)\"]\n\
+    [[contact]]\nbodies = [\"low\", \"up\"]\n";
+
+fn solver(session: &Session, kind: ContactType) -> FetiFeti {
+    let scene = Scene::parse("blocks.toml", BLOCKS).expect("a good scene");
+    let problem = scene.substructures(&|_| true).expect("a good scene");
+    let mut settings = Settings::from(MethodSettings {
+        rtol: 1e-10,
+        ..MethodSettings::default()
+    });
+    settings.contact.kind = kind;
+    FetiFeti::new(session, problem, settings).expect("the set-up works")
+}
+
+/// Rows that no set-up accepts, and rows that leave a body loose: the old ones are still there after either.
+#[test]
+fn a_solver_keeps_its_rows_where_others_are_refused() {
+    with_session(|session| {
+        let mut solver = solver(session, ContactType::ActiveSet);
+        let before = solver.solve().expect("there is a solution");
+        let rows = solver.problem().rows.clone();
+        let mut bad = rows.clone();
+        bad[0].terms[0].0 = u64::MAX;
+        let refused = solver.set_rows(bad).expect_err("no subdomain has this dof");
+        assert!(
+            refused.to_string().contains("no subdomain holds"),
+            "{refused}"
+        );
+        let now = &solver.problem().rows;
+        let terms = now.iter().map(|r| &r.terms);
+        assert!(terms.eq(rows.iter().map(|r| &r.terms)), "{now:?}");
+        assert_eq!(solver.problem().local.len(), 4);
+        let after = solver.solve().expect("there is a solution");
+        assert!(after.converged(), "{}", after.status);
+        assert_eq!(before.u, after.u);
+        solver.set_rows(rows).expect("these rows are good");
+        let again = solver.solve().expect("there is a solution");
+        assert!(near(again.energy, before.energy, 1e-9), "{}", again.energy);
+    });
+}
+
+/// A callback ends the loop in the middle of each method: with springs in the rows, in a face, and with few rows held.
+#[test]
+fn a_loop_that_is_ended_leaves_the_operators_as_they_were() {
+    with_session(|session| {
+        for kind in [
+            ContactType::ActiveSet,
+            ContactType::AugmentedLagrangian,
+            ContactType::Smalbe,
+        ] {
+            let solver = solver(session, kind);
+            let spectrum = || -> Spectrum {
+                let found = solver.spectrum().expect("SLEPc finds it");
+                found.expect("there are multipliers")
+            };
+            let before = spectrum();
+            for last in 1..=2 {
+                let mut steps = 0;
+                let ended = solver.solve_from(None, &mut |_, _| {
+                    steps += 1;
+                    match steps == last {
+                        true => Err(Error::input("that is enough")),
+                        false => Ok(()),
+                    }
+                });
+                let ended = ended.expect_err("the callback ends it");
+                assert!(
+                    ended.to_string().contains("that is enough"),
+                    "{kind:?}: {ended}"
+                );
+                let after = spectrum();
+                let what = format!("{kind:?}, step {last}: {before:?}, then {after:?}");
+                assert!(near(after.lambda_max, before.lambda_max, 1e-6), "{what}");
+                assert!(near(after.lambda_min, before.lambda_min, 1e-6), "{what}");
+            }
+        }
+    });
+}
+
+/// The tolerance of `solve_early` begins loose: an estimate that fails must not leave it so.
+#[test]
+fn an_estimate_that_fails_leaves_the_tolerance() {
+    with_session(|session| {
+        let solver = solver(session, ContactType::ActiveSet);
+        let fails = solver.solve_early(None, &mut |_, _| Ok(()), &mut |_| {
+            Err(Error::input("no estimate"))
+        });
+        assert!(fails.is_err());
+        let rtol = solver.ksp().tolerances().expect("PETSc has them").0;
+        assert_eq!(rtol, 1e-10);
+    });
+}
