@@ -1,4 +1,4 @@
-//! The augmented Lagrangian of the inequalities, minimised by damped Newton steps: the method that always ends
+//! The augmented Lagrangian of the inequalities, minimised by damped Newton steps: but for rounding it ends
 //! (docs/theory.md, section 9).
 //!
 //! ```text
@@ -48,6 +48,10 @@ const FLICKER: usize = 1;
 /// A step of a trial that is this much more exact than the best one counts wrong rows anew: it sees more of them.
 const FINER: f64 = 0.1;
 
+/// Least factor on the tolerance of a trial. It falls by [`FINER`] with each minimum whose set turns out to be wrong:
+/// short waves of multipliers need more digits for their signs than displacements.
+const MOST_DIGITS: f64 = 1e-4;
+
 /// Steps after which the loop asks whether the rows can carry the load. Most loops have ended before.
 const DOUBT: usize = 20;
 
@@ -68,6 +72,7 @@ pub(super) fn solve(
         clock: Instant::now(),
         seconds,
         before: steps.len(),
+        digits: 1.0,
         steps,
         observe,
     };
@@ -107,7 +112,9 @@ pub(super) fn solve(
             }
         };
         let minimal = came == Came::Down;
-        if minimal && search.is_solution(course.rtol)? {
+        // Where φ falls no more, rounding may have ended the last minimisation.
+        let ended = minimal || (came == Came::Nowhere && progress.wrong() == 0);
+        if ended && search.is_solution(course.rtol)? {
             let status = match status.converged() {
                 true => status,
                 false => Status::Rounding,
@@ -118,6 +125,9 @@ pub(super) fn solve(
         if may_try {
             if let Some((run, status)) = course.attempt(&search, &mut state, minimal)? {
                 return course.end(run, status);
+            }
+            if minimal {
+                course.digits = (FINER * course.digits).max(MOST_DIGITS);
             }
         }
         search.stiffen();
@@ -136,6 +146,8 @@ struct Course<'a, 'o> {
     /// All steps, and the number of those before.
     steps: Vec<Step>,
     before: usize,
+    /// Factor on the tolerance of a trial of a minimum's set.
+    digits: f64,
     observe: &'a mut Observer<'o>,
 }
 
@@ -185,6 +197,10 @@ impl<'a> Course<'a, '_> {
         let trial = State {
             safeguarded: false,
             progress: Progress::default(),
+            accuracy: match minimal {
+                true => self.digits * state.accuracy,
+                false => state.accuracy,
+            },
             ..state.clone()
         };
         let mut run = ActiveSet::new(self.method, self.settings, Some(&trial))?;

@@ -15,6 +15,7 @@ mod balance;
 mod damping;
 mod dependent;
 mod feasible;
+mod give;
 mod judge;
 mod lagrangian;
 mod motion;

@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use super::damping::{Penalty, Point};
 use super::dependent;
+use super::give::softness;
 use super::judge;
 use super::motion;
 use super::restore::restore;
@@ -28,9 +29,13 @@ use crate::petsc::Stopped;
 use crate::status::Status;
 use crate::Result;
 
-/// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes. Much
-/// softer springs take more minimisations, much stiffer ones more steps in each.
+/// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes, in
+/// compact bodies. Much softer springs take more minimisations, much stiffer ones more steps in each.
 const STIFFNESS: f64 = 30.0;
+
+/// Bodies are compact if they give way at the rows by no more than this many times what the nodes alone do. The springs
+/// of bodies that bend begin as many times softer as these are.
+const COMPACT: f64 = 7.0;
 
 /// Factor by which the springs become stiffer from one minimisation to the next, …
 const STIFFER: f64 = 3.0;
@@ -77,8 +82,10 @@ pub struct Search<'a> {
     /// C and μ.
     compliance: Vec<f64>,
     multiplier: Vec<f64>,
-    /// Where the loop is; `None` before the first step of a minimisation.
+    /// Where the loop is; `None` before the first step.
     point: Option<Point>,
+    /// Whether the next step is the first of a minimisation.
+    begins: bool,
     /// The largest displacement in the last step.
     pub length: f64,
     n_rows: usize,
@@ -107,14 +114,18 @@ impl<'a> Search<'a> {
             state.reference = at.evaluate_projected(&dual)?;
         }
         at.lambda.array_mut()?.copy_from_slice(&state.lambda);
+        // Whole minimisations earlier, so that about the same softness gives the same springs.
+        let softer = softness(method, &nodes)? / COMPACT;
+        let first = STIFFNESS / STIFFER.powf(softer.max(1.0).log(STIFFER).round());
         let mut search = Search {
             at,
-            stiffness: STIFFNESS / STIFFER,
+            stiffness: first / STIFFER,
             compliance: Vec::new(),
             multiplier: vec![0.0; counts.len()],
             counts,
             nodes,
             point: None,
+            begins: true,
             length: 0.0,
             n_rows: stiffness.jump.n_global,
             few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)) as usize,
@@ -148,17 +159,19 @@ impl<'a> Search<'a> {
 
     /// μ ← (s)₊, and the set of the rows with μ > 0. Ends a minimisation.
     pub fn update(&mut self, state: &mut State) {
-        let Some(point) = self.point.take() else {
+        let Some(point) = &self.point else {
             return;
         };
-        let s = self.penalty().pull(&point);
+        let s = self.penalty().pull(point);
         self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
         dependent::settle(&self.method.dual().stiffness.jump, &mut self.multiplier);
         state.active = self.set(&self.multiplier);
     }
 
-    /// Makes the springs stiffer. The next minimisation begins with a full step on the set of `state`.
+    /// Makes the springs stiffer. The next minimisation goes on from where the loop is, with a step on the set of
+    /// `state`.
     pub fn stiffen(&mut self) {
+        self.begins = true;
         self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
         let of = |(counts, node): (&bool, &f64)| match counts {
             true => node / self.stiffness,
@@ -228,14 +241,17 @@ impl<'a> Search<'a> {
         drop(dual);
 
         let mut run: Option<Run> = None;
-        let mut reduction = REDUCTION * STIFFNESS / self.stiffness;
+        let softer = (STIFFNESS / self.stiffness).min(1.0);
+        let mut reduction = REDUCTION * softer;
+        let begins = std::mem::take(&mut self.begins);
         let mut length = None;
         let mut tolerance = first;
         let (mut end, mut centred) = (None, false);
         for _ in 0..ATTEMPTS + usize::from(restored > 0) {
             let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
             let least = state.accuracy * least;
-            tolerance = (reduction * first).max(MORE * least).max(self.least);
+            tolerance = (reduction * first).max(MORE * softer * least);
+            tolerance = tolerance.max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control, None)?;
             run = Some(match run.take() {
@@ -248,7 +264,8 @@ impl<'a> Search<'a> {
                 None => Some(1.0),
             };
             end = Some(here);
-            if length.is_some() {
+            // The set of μ is a guess: from a point where φ falls not, the set of that point is next.
+            if length.is_some() || begins {
                 break;
             }
             // Rows that were put back may pull uphill. Springs from the present gaps cannot.
@@ -299,6 +316,7 @@ impl<'a> Search<'a> {
             seconds: clock.elapsed().as_secs_f64(),
         };
         let came = match t {
+            0.0 if begins => Came::Somewhere,
             0.0 => Came::Nowhere,
             1.0 if wrong == 0 => Came::Down,
             t if t > 0.99 && wrong <= self.few => Came::Near,
@@ -327,9 +345,21 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether the springs give way by no more than the tolerance. Collective.
+    /// Whether the springs give way by no more than the tolerance, and their forces are those of the displacements to
+    /// the digits that this asks for. Collective.
     pub fn is_solution(&self, rtol: f64) -> Result<bool> {
         let comm = self.method.session.comm();
+        let Some(point) = &self.point else {
+            return Ok(false);
+        };
+        let pull = self.penalty().pull(point);
+        let pairs = || (0..pull.len()).filter(|&i| self.counts[i]);
+        let apart = pairs().map(|i| (pull[i].max(0.0) - point.force[i]).abs());
+        let force = pairs().map(|i| point.force[i].abs());
+        let (apart, force) = (apart.fold(0.0, f64::max), force.fold(0.0, f64::max));
+        if highest(comm, apart) > rtol.sqrt() * highest(comm, force) {
+            return Ok(false);
+        }
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
         let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());

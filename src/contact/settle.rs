@@ -6,15 +6,26 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
+use crate::linalg::semidefinite::Semidefinite;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::gather_all;
 
 /// A row a z ≤ b: a as (motion, coefficient as bits), scaled to a largest coefficient of 1.
 type Row = Vec<(u64, u64)>;
 
+/// Work of a row on a motion below this, relative to the largest that it could be, is none.
+const AGAINST: f64 = 1e-8;
+
+/// Where no motion removes all violations, so many motions at most are looked at together for one that leaves least.
+const FEW: usize = 64;
+
+/// Largest number of Newton steps to it.
+const STEPS: usize = 50;
+
 /// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors that
-/// are known here. It is a combination of those motions that nothing holds or drives. `None` if there is no such
-/// motion. Collective.
+/// are known here. It is a combination of those motions that nothing holds or drives. Where some violations stay
+/// whatever the motion is, it is the motion that leaves the least sum of their squares. `None` if bodies are to stay
+/// where they are. Collective.
 pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
     let motions = dual.natural.unheld();
     if motions.is_empty() {
@@ -28,12 +39,14 @@ pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
         let least = all.entry(a).or_insert(f64::INFINITY);
         *least = least.min(b);
     };
-    for i in jump.rows_between_bodies().filter(|&i| jump.inequality[i]) {
+    // Rows that hold see nothing of these motions but rounding.
+    let open = |i: &usize| jump.inequality[*i] && !jump.active[*i];
+    for i in jump.rows_between_bodies().filter(open) {
         let (columns, values) = g.entries(i);
         let a = by_column.works(columns, values);
         let largest = a.iter().fold(0.0f64, |m, x| m.max(x.1.abs()));
         let size: f64 = values.iter().map(|x| x.abs()).sum();
-        if largest > 1e-10 * size {
+        if largest > AGAINST * size {
             let rounded = a.iter().map(|&(m, x)| {
                 let x = (x / largest * 1e12).round() / 1e12 + 0.0;
                 (m as u64, x.to_bits())
@@ -87,7 +100,7 @@ pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// Least distance programming by NNLS (Lawson and Hanson, chapter 23): min ‖z‖ with −A z ≥ −b, for the motions
-/// `members`. `None` if z = 0 does, or nothing does.
+/// `members`. `None` if z = 0 does.
 fn least(members: &[usize], rows: &[(&Row, f64)]) -> Option<Vec<f64>> {
     if rows.iter().all(|row| row.1 >= 0.0) {
         return None;
@@ -106,8 +119,64 @@ fn least(members: &[usize], rows: &[(&Row, f64)]) -> Option<Vec<f64>> {
     wanted[n] = 1.0;
     let (_, rest) = nnls(&e, &wanted, &vec![false; rows.len()]);
     if rest[n].abs() < 1e-9 {
-        return None;
+        return (n <= FEW).then(|| least_violation(members, rows));
     }
     // `rest` is b − A x here, the negative of the residual in the book. The quotient is the same.
     Some((0..n).map(|j| -rest[j] / rest[n] * scale).collect())
+}
+
+/// min ½ ‖(A z − b)₊‖² + ½ δ ‖z‖² for the motions `members`, with a δ that is small beside A: by Newton's method with
+/// steps that are halved until the function falls.
+fn least_violation(members: &[usize], rows: &[(&Row, f64)]) -> Vec<f64> {
+    let n = members.len();
+    let of = |a: &Row| -> Vec<(usize, f64)> {
+        let place = |m: u64| members.binary_search(&(m as usize));
+        let entries = a.iter().map(|&(m, x)| (place(m), f64::from_bits(x)));
+        entries
+            .map(|(j, x)| (j.expect("rows of this set"), x))
+            .collect()
+    };
+    let rows: Vec<(Vec<(usize, f64)>, f64)> = rows.iter().map(|(a, b)| (of(a), *b)).collect();
+    let weak = 1e-9 * rows.len() as f64 / n as f64;
+    let beyond = |z: &[f64], (a, b): &(Vec<(usize, f64)>, f64)| {
+        let along: f64 = a.iter().map(|&(j, x)| x * z[j]).sum();
+        (along - b).max(0.0)
+    };
+    let value = |z: &[f64]| {
+        let squares: f64 = rows.iter().map(|row| beyond(z, row).powi(2)).sum();
+        squares + weak * z.iter().map(|z| z * z).sum::<f64>()
+    };
+    let mut z = vec![0.0; n];
+    let mut now = value(&z);
+    for _ in 0..STEPS {
+        let mut h = Dense::zeros(n, n);
+        let mut d: Vec<f64> = z.iter().map(|z| -weak * z).collect();
+        (0..n).for_each(|j| h.set(j, j, weak));
+        for row in &rows {
+            let far = beyond(&z, row);
+            if far > 0.0 {
+                for &(i, x) in &row.0 {
+                    d[i] -= x * far;
+                    for &(j, y) in &row.0 {
+                        h.set(i, j, h.get(i, j) + x * y);
+                    }
+                }
+            }
+        }
+        Semidefinite::new(&h).solve(&mut d);
+        let mut t = 1.0;
+        let next = loop {
+            let next: Vec<f64> = z.iter().zip(&d).map(|(z, d)| z + t * d).collect();
+            let then = value(&next);
+            if then < now || t < 1e-6 {
+                break (next, then);
+            }
+            t *= 0.5;
+        };
+        if next.1 >= (1.0 - 1e-12) * now {
+            break;
+        }
+        (z, now) = next;
+    }
+    z
 }

@@ -15,4 +15,5 @@ mod qp_reference;
 mod random;
 mod random_reference;
 mod reference;
+mod wave;
 mod zero;

@@ -33,6 +33,7 @@ use super::projector::graph::BodyGraph;
 use super::projector::sweep::{self, Column};
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
+use crate::parallel::exchange::total;
 use crate::substructures::Substructures;
 use crate::Result;
 use balance::Balance;
@@ -63,6 +64,10 @@ pub struct Cost {
     pub seconds: f64,
 }
 
+/// Vectors whose renewal takes more than this many products with F are used only if no fewer rows hold. Else many have
+/// lost their rows: they depend on each other, and to renew them costs more than the iteration.
+const MANY: f64 = 100.0;
+
 /// Where coefficients jump, an iteration is broken off at this eigenvalue. Elsewhere the limit is far higher.
 pub const EXPECTED: f64 = 1.5 * Adaptive::USUAL;
 
@@ -88,6 +93,10 @@ pub struct Deflation {
     /// M⁻¹ P_iᵀ F_i μ with all rows of the search.
     columns: Vec<Column>,
     matrices: Matrices,
+    /// Whether the rows that hold are too few for so many vectors: P_2 is I then.
+    idle: bool,
+    /// Whether the user has asked for a bound of the spectrum: the vectors are then used whatever they cost.
+    pub bounded: bool,
     /// Whether the last search found nothing above the bound. No iteration is broken off for another search then.
     pub exhausted: bool,
 }
@@ -143,6 +152,8 @@ impl Deflation {
             balance,
             columns,
             matrices,
+            idle: false,
+            bounded: false,
             exhausted: false,
         })
     }
@@ -176,7 +187,19 @@ impl Deflation {
         if self.columns.is_empty() {
             return Ok(());
         }
-        let active = &dual.stiffness.jump.active;
+        let jump = &dual.stiffness.jump;
+        let active = &jump.active;
+        let rows = jump.rows_between_bodies().filter(|&r| active[r]).count();
+        let rows = total(dual.comm(), rows as f64);
+        let vectors = self.cost.vectors.iter().sum::<usize>() + self.cost.shared;
+        // A vector lives on its body and those near it.
+        let near = self.cost.vectors.iter().zip(&self.graph.near);
+        let near: usize = near.map(|(n, near)| n * near.len()).sum();
+        let products = near as f64 / self.graph.n as f64;
+        self.idle = !self.bounded && products > MANY && vectors as f64 > rows;
+        if self.idle {
+            return Ok(());
+        }
         let mask = |column: &Column| Column {
             entries: column
                 .entries
@@ -200,6 +223,6 @@ impl Deflation {
 
     /// P_2 as matrices; `None` without vectors.
     pub fn matrices(&self) -> Option<&Matrices> {
-        (!self.columns.is_empty()).then_some(&self.matrices)
+        (!self.columns.is_empty() && !self.idle).then_some(&self.matrices)
     }
 }

@@ -141,6 +141,7 @@ impl LinearMethod {
         } else {
             let mut deflation = Deflation::new(&self.problem, &self.dual(), tau, most)?;
             deflation.cost.before = before;
+            deflation.bounded = matches!(self.settings.adaptive, Adaptive::Below(_));
             self.system.change_deflation().replace(deflation);
         }
         Ok(())

@@ -146,7 +146,7 @@ impl System {
 
     /// Whether a projection leaves nothing outside V but rounding, and nothing is deflated.
     pub(crate) fn keeps_to_v(&self) -> bool {
-        self.deflation.borrow().is_none() && self.dual().natural.is_exact()
+        self.p2_matrices().is_none() && self.dual().natural.is_exact()
     }
 
     /// Whether an operator is applied to what is in V already.

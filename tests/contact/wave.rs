@@ -1,0 +1,48 @@
+//! A wave spring: rings that touch at their crests alone, float, and are held sideways by slopes alone.
+
+use crate::support::assembled::Assembled;
+use crate::support::checks::near;
+use crate::support::mpi::{command, Scratch};
+use crate::support::session::with_session;
+use fetifeti::scene::Scene;
+use fetifeti::{FetiFeti, MethodSettings, Solution};
+
+/// The scene that `scripts/wave_spring.py` writes.
+fn scene(rings: usize, around: usize) -> Scene {
+    let scratch = Scratch::new("wave");
+    let out = scratch.path("");
+    let (rings, around) = (rings.to_string(), around.to_string());
+    let mut python = command("python3");
+    python.args(["scripts/wave_spring.py", &rings, &around, &out]);
+    let done = python.output().expect("python3 starts");
+    assert!(done.status.success(), "{done:?}");
+    Scene::load(scratch.path("wave_spring.toml")).expect("a good scene")
+}
+
+fn solve(scene: &Scene) -> Solution {
+    let problem = scene.substructures(&|_| true).expect("a good scene");
+    with_session(move |session| {
+        let settings = MethodSettings {
+            rtol: 1e-8,
+            ..MethodSettings::default()
+        };
+        let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+        solver.solve().expect("there is a solution")
+    })
+}
+
+/// The loop comes to the energy of the assembled quadratic programme. It did not end with springs that are as stiff as
+/// nodes.
+#[test]
+fn three_rings_have_the_energy_of_the_quadratic_programme() {
+    let scene = scene(3, 24);
+    let found = solve(&scene);
+    println!(
+        "{} steps, {} iterations",
+        found.steps.len(),
+        found.iterations
+    );
+    assert!(found.converged(), "{}", found.status);
+    let (is, should) = (found.energy, Assembled::of_scene(&scene).solve().energy);
+    assert!(near(is, should, 1e-6), "{is:e}, expected {should:e}");
+}
