@@ -120,7 +120,7 @@ fn deflation(
 
 fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     let plan = scene.plan();
-    let mut out = lines(&scene.notes);
+    let mut out = lines(&scene.sentences());
     let so =
         "a load that drives this has no answer, and without one the place along it is arbitrary";
     out += &lines(&doubts::free(&doubts::recorded(scene, &sizes.free), so));

@@ -20,7 +20,7 @@ pub(super) fn report(session: &Session, scene: &Scene, sizes: &Sizes) -> Result<
         form: physics::form(scene),
         ranks: session.size(),
         options: record::options(session)?,
-        notes: scene.notes.clone(),
+        notes: scene.sentences(),
         free_motions: doubts::recorded(scene, &sizes.free),
         warnings: scene.warnings.clone(),
         bodies: bodies

@@ -88,7 +88,7 @@ pub(super) fn report(
             h1,
             energy_norm,
         }),
-        notes: scene.notes.clone(),
+        notes: scene.sentences(),
         free_motions: doubts::recorded(scene, &solver.free_motions()),
         warnings: [scene.warnings.clone(), doubts::beyond(session, scene, course)].concat(),
         probes: Vec::new(),

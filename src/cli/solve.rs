@@ -40,7 +40,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
     let scene = distribution::load_part(session, &args.scene)?;
     on_first_rank(session, || {
         destination.prepare()?;
-        destination.print(&lines(&scene.notes))
+        destination.print(&lines(&scene.sentences()))
     })?;
     solve(session, &args, &destination, &scene, clock, None)?;
     Ok(())
@@ -58,8 +58,8 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned());
     let stem = stem.unwrap_or_default();
-    let mut said = deck.notes();
-    on_first_rank(session, || destination.print(&lines(&said)))?;
+    let mut told = deck.notes();
+    on_first_rank(session, || destination.print(&lines(&told)))?;
     // Only rank 0 has tables.
     let mut printed = Vec::new();
     let n = deck.n_steps();
@@ -71,11 +71,11 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
         };
         let scene = session.agree(deck.scene(&title, step))?;
         distribution::same_on_all_ranks(session, &args.scene, &scene)?;
-        // What the bodies of this step add to the notes of the deck.
-        let new = |note: &&String| !said.contains(note);
-        let more: Vec<String> = scene.notes.iter().filter(new).cloned().collect();
-        on_first_rank(session, || destination.print(&lines(&more)))?;
-        said.extend(more);
+        // What steps have in common is said once.
+        let mut new = scene.sentences();
+        new.retain(|note| !told.contains(note));
+        on_first_rank(session, || destination.print(&lines(&new)))?;
+        told.extend(new);
         let mut of_step = destination.clone();
         if n > 1 {
             of_step.out = destination

@@ -18,6 +18,7 @@
 
 mod distance;
 mod dual;
+mod foot;
 mod orientation;
 mod plane;
 mod sample;
@@ -27,6 +28,7 @@ mod tree;
 
 pub use distance::{distance, reach};
 pub use dual::{has_positive_integrals, positive, rows, Row};
+pub use foot::Feet;
 pub use orientation::one_way;
 pub use sample::{samples, Sample};
 pub use side::{across, reversed, Face, Side};

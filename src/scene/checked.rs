@@ -84,6 +84,9 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// What makes the answer doubtful: a sentence each.
     pub warnings: Vec<String>,
+    /// What else users are told: boundary groups that no entry names, faces of joints without a partner, gaps that
+    /// count as none.
+    pub asides: Vec<String>,
     /// Whether load steps could renew its contacts.
     pub(crate) renewable: bool,
     /// What load steps renew contacts from, if they do.
@@ -177,11 +180,14 @@ impl Scene {
             Some(steps) if steps.update => Some(spec.clone()),
             _ => None,
         };
-        rows::surfaces::expand(&bodies, &mut matching, &mut spec)?;
+        let origins = rows::surfaces::expand(&bodies, &mut matching, &mut spec)?;
         if let Some(steps) = &mut steps {
             steps.renumber(&spec);
         }
-        let mut interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
+        let (mut interfaces, left_out) =
+            rows::entries::find(&bodies, matching, (&spec, &origins), &steps)?;
+        spec.notes.extend(left_out.notes);
+        spec.asides.extend(left_out.asides);
         let mut obstacles = rows::obstacles::find(
             &bodies,
             &spec.obstacles,
@@ -245,6 +251,7 @@ impl Scene {
             exact: spec.exact,
             notes: spec.notes,
             warnings: cuts.warnings,
+            asides: spec.asides,
             renewable: may_renew(&spec.form, &spec.contacts),
             renewal,
             mostly_tied: tied,
@@ -274,6 +281,11 @@ impl Scene {
     /// As [`Scene::new`].
     pub fn grid(title: impl Into<String>, grid: &GridSpec) -> Result<Scene> {
         Scene::new(SceneSpec::tied(title, grid.expand()))
+    }
+
+    /// All that users are told of the input.
+    pub fn sentences(&self) -> Vec<String> {
+        self.notes.iter().chain(&self.asides).cloned().collect()
     }
 
     /// The dimension, 2 or 3.

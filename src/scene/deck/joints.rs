@@ -3,43 +3,74 @@
 use super::bodies::along_coordinates;
 use super::numbers::Numbers;
 use crate::error::Result;
-use crate::mesh::deck::{Adjust, ContactPair, Deck, Overclosure};
+use crate::mesh::deck::{Adjust, ContactPair, Deck, Overclosure, SurfaceName, Tie};
 use crate::mesh::Members;
 use crate::scene::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::substructures::BodyNode;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
+
+/// The nodes of a slave within a distance of the master, one by one, as CalculiX joins them.
+fn singly(distance: f64) -> Extent {
+    Extent::Within {
+        distance,
+        singly: true,
+    }
+}
+
+/// Gives the surfaces of ties and contact pairs names that no other boundary group has: a *NSET may have that of a
+/// *SURFACE.
+pub(super) fn distinguish(deck: &mut Deck) {
+    let ties = deck.ties.iter().map(|t| [&t.slave, &t.master]);
+    let contacts = deck.contacts.iter().map(|c| [&c.slave, &c.master]);
+    let joined = ties.chain(contacts).flatten().map(|s| s.group as usize);
+    let joined: BTreeSet<usize> = joined.collect();
+    let mut names = HashSet::new();
+    let others = (0..deck.mesh.groups.len()).filter(|g| !joined.contains(g));
+    for g in joined.iter().copied().chain(others) {
+        let group = &mut deck.mesh.groups[g];
+        if matches!(group.members, Members::Cells { .. }) {
+            continue;
+        }
+        let own = group.name.clone();
+        let mut number = 2;
+        while names.contains(&group.name) {
+            group.name = format!("{own} ({number})");
+            number += 1;
+        }
+        if joined.contains(&g) {
+            names.insert(group.name.clone());
+        }
+    }
+}
+
+/// The two surfaces of a tie or a contact pair.
+fn surfaces(deck: &Deck, slave: &SurfaceName, master: &SurfaceName) -> Pair {
+    let [a, b] = [slave, master].map(|s| deck.mesh.groups[s.group as usize].name.clone());
+    Pair::Surfaces(a, b)
+}
 
 /// The ties, among them the contact pairs that tie.
 pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
-    let tie = |slave: &str, master: &str, tolerance: Option<f64>, written: String| TieSpec {
-        pair: Pair::Surfaces(slave.into(), master.into()),
+    let tie = |pair: Pair, tolerance: Option<f64>, written: String| TieSpec {
+        pair,
         sides: None,
-        extent: Extent::All,
+        extent: tolerance.map_or(Extent::All, singly),
         multipliers: None,
         adjust: tolerance.unwrap_or(0.0),
         written,
     };
     let ties = deck.ties.iter();
-    let mut out: Vec<TieSpec> = ties
-        .map(|t| {
-            tie(
-                &t.slave.name,
-                &t.master.name,
-                t.tolerance,
-                at(deck, t.place),
-            )
-        })
-        .collect();
+    let of_tie = |t: &Tie| {
+        let pair = surfaces(deck, &t.slave, &t.master);
+        tie(pair, t.tolerance, at(deck, t.place))
+    };
+    let mut out: Vec<TieSpec> = ties.map(of_tie).collect();
     for pair in &deck.contacts {
         let interaction = &deck.interactions[pair.interaction as usize];
         if matches!(interaction.overclosure, Overclosure::Tied { .. }) {
-            out.push(tie(
-                &pair.slave.name,
-                &pair.master.name,
-                None,
-                at(deck, pair.place),
-            ));
+            let both = surfaces(deck, &pair.slave, &pair.master);
+            out.push(tie(both, None, at(deck, pair.place)));
         }
     }
     out
@@ -64,9 +95,13 @@ pub(super) fn contacts(
             Adjust::Nodes(nodes) => (0.0, adjusted(deck, numbers, pair, nodes)?),
         };
         out.push(ContactSpec {
-            pair: Pair::Surfaces(pair.slave.name.clone(), pair.master.name.clone()),
+            pair: surfaces(deck, &pair.slave, &pair.master),
             sides: None,
-            extent: Extent::All,
+            // Nodes of a slave of nodes may form no faces.
+            extent: match pair.slave.nodes {
+                true => singly(f64::INFINITY),
+                false => Extent::All,
+            },
             gap: Profile::constant(pair.clearance.unwrap_or(0.0)),
             distance: None,
             multipliers: exchanged.map(|_| 1),

@@ -7,6 +7,7 @@ mod bodies;
 mod carriers;
 mod joints;
 mod numbers;
+mod tied;
 mod torn;
 
 use std::path::Path;
@@ -34,8 +35,8 @@ pub struct DeckScenes {
     meshes: Vec<Extracted>,
     /// Whether all elements are integrated in full, whatever their types.
     in_full: bool,
-    /// A sentence for each kind of defect in its mesh, and on what was turned in it.
-    torn: Vec<String>,
+    /// A sentence for each tie that moves nodes, for each kind of defect in the mesh, and on what was turned in it.
+    changes: Vec<String>,
     /// For each contact pair the ratio by which its slave is finer, where its master carries the multipliers.
     exchanged: Vec<Option<f64>>,
 }
@@ -73,16 +74,18 @@ impl DeckScenes {
         }
         let turned = deck.turn_clockwise();
         let numbers = Numbers::new(&deck);
+        joints::distinguish(&mut deck);
+        let mut changes = tied::adjust(&mut deck);
         let meshes = bodies::meshes(&deck, &numbers);
-        let mut torn = torn::notes(&deck, &numbers, &meshes);
-        torn.extend(clockwise(&deck, &turned));
+        changes.extend(torn::notes(&deck, &numbers, &meshes));
+        changes.extend(clockwise(&deck, &turned));
         Ok(DeckScenes {
             exchanged: carriers::exchanged(&deck),
             deck,
             numbers,
             meshes,
             in_full: false,
-            torn,
+            changes,
         })
     }
 
@@ -93,7 +96,7 @@ impl DeckScenes {
         self
     }
 
-    /// The deck as it was read.
+    /// The deck as it was read, but for what its ties move.
     pub fn deck(&self) -> &Deck {
         &self.deck
     }
@@ -109,10 +112,10 @@ impl DeckScenes {
         let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
         let unused = deck.mesh.unused(deck.dim(), &[]);
-        let torn = self.torn.iter().cloned();
+        let changes = self.changes.iter().cloned();
         let all = ignored.chain(replaced).chain(unused);
         let exchanged = carriers::notes(deck, &self.exchanged);
-        all.chain(torn).chain(exchanged).collect()
+        all.chain(changes).chain(exchanged).collect()
     }
 
     /// Number of steps, ≥ 1.

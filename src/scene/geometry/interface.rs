@@ -100,6 +100,20 @@ impl Interface {
         self.limits = Limits::new(self.limits.all().iter().take(1).copied().collect());
     }
 
+    /// Keeps some of its pairs of nodes, before they are joined.
+    pub(crate) fn keep(&mut self, meant: impl Fn(&SharedNode) -> bool) {
+        let keep: Vec<bool> = self.shared.iter().map(meant).collect();
+        let mut all = keep.iter();
+        self.shared
+            .retain(|_| *all.next().expect("a flag for each"));
+        let mut all = keep.iter();
+        self.normals
+            .retain(|_| *all.next().expect("a flag for each"));
+        let mut all = keep.iter();
+        self.distances
+            .retain(|_| *all.next().expect("a flag for each"));
+    }
+
     /// Whether some of its nodes are in contact.
     pub fn has_contact(&self) -> bool {
         !self.limits.all().is_empty()

@@ -11,6 +11,7 @@ pub mod nearest;
 pub mod normals;
 pub mod overlap;
 pub mod sides;
+pub mod single;
 pub mod surface;
 pub mod sweep;
 pub mod topology;

@@ -34,6 +34,20 @@ pub(crate) fn interface(
     let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]], form.element));
     let reach = mortar::reach(&own.0, &other.0, reach);
     let surfaces = Surfaces::new([own, other], reach);
+    of_surfaces(bodies, form, (pair, sides), multipliers, (surfaces, None))
+}
+
+/// The interface of two sides, the first of which carries the multipliers; `None` if they do not face each other. The
+/// normals at the nodes with multipliers, out of their body, are those of the side if none are given.
+pub(super) fn of_surfaces(
+    bodies: &[Body],
+    form: &Form,
+    (pair, sides): ([usize; 2], [usize; 2]),
+    multipliers: usize,
+    (surfaces, out): (Surfaces, Option<Vec<[f64; 3]>>),
+) -> Option<Interface> {
+    let order = [multipliers, 1 - multipliers];
+    let specs = order.map(|k| &bodies[pair[k]].spec);
     let rows = surfaces.rows(form, &|_| false);
     if rows.is_empty() {
         return None;
@@ -49,7 +63,7 @@ pub(crate) fn interface(
         surfaces.nodes[1][found.expect("a side has nodes")]
     };
     let nodes: Vec<usize> = rows.iter().map(|r| r.node).collect();
-    let out = of_side(specs[0], sides[multipliers], &nodes);
+    let out = out.unwrap_or_else(|| of_side(specs[0], sides[multipliers], &nodes));
     let distances = rows.iter().zip(&out);
     let distances = distances
         .map(|(row, n)| row.distance(specs[0], &|k| specs[1].undeformed(k), *n))

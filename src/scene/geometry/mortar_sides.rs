@@ -1,5 +1,6 @@
 //! Two sides that mortar integrals join, and the rows that follow, with nodes of bodies.
 
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 
 use crate::fem::Form;
@@ -24,6 +25,8 @@ pub(crate) struct Surfaces {
     /// The node of its body for each node of a side.
     pub(super) nodes: [Vec<usize>; 2],
     samples: Vec<Sample>,
+    /// The rows of nodes that are held one by one, in the place of integrals.
+    single: Option<Vec<BodyRow>>,
 }
 
 impl Surfaces {
@@ -33,12 +36,45 @@ impl Surfaces {
             samples: mortar::samples(&own.0, &other.0, reach),
             sides: [own.0, other.0],
             nodes: [own.1, other.1],
+            single: None,
         }
+    }
+
+    /// Sides of which nodes of the first are held one by one, by these rows.
+    pub fn single([own, other]: [(Arc<Side>, Vec<usize>); 2], rows: Vec<BodyRow>) -> Surfaces {
+        Surfaces {
+            samples: Vec::new(),
+            sides: [own.0, other.0],
+            nodes: [own.1, other.1],
+            single: Some(rows),
+        }
+    }
+
+    /// The nodes of the faces of both sides that lie opposite each other; of the side with the multipliers only those
+    /// that are held where they are held one by one.
+    pub fn facing(&self) -> [HashSet<usize>; 2] {
+        let mut out = [HashSet::new(), HashSet::new()];
+        let of_faces = self.samples.iter().map(|s| [s.face, s.other]);
+        for faces in of_faces.collect::<BTreeSet<_>>() {
+            for (k, face) in faces.into_iter().enumerate() {
+                let nodes = &self.sides[k].faces()[face as usize].nodes;
+                out[k].extend(nodes.iter().map(|&n| self.nodes[k][n as usize]));
+            }
+        }
+        for row in self.single.iter().flatten() {
+            out[0].insert(row.node);
+            out[1].extend(row.other.iter().map(|t| t.0));
+        }
+        out
     }
 
     /// The rows of the nodes of the multiplier side for which `excluded` (called with the node of the body) does not
     /// hold. Nodes in rows are those of the bodies.
     pub fn rows(&self, form: &Form, excluded: &dyn Fn(usize) -> bool) -> Vec<BodyRow> {
+        if let Some(rows) = &self.single {
+            let rows = rows.iter().filter(|row| !excluded(row.node));
+            return rows.cloned().collect();
+        }
         let [own, theirs] = [0, 1].map(|k| {
             move |list: Vec<(u32, f64)>| -> Vec<(usize, f64)> {
                 let node = |(n, v): (u32, f64)| (self.nodes[k][n as usize], v);

@@ -31,6 +31,13 @@ pub enum Extent {
     Points(Vec<[f64; 2]>),
     /// The nodes with these numbers, counted from 0 along the common face.
     Nodes(Vec<usize>),
+    /// The nodes of the side with the multipliers that are near the other side. It is for entries that name sides.
+    Within {
+        /// How far they may be from its faces.
+        distance: f64,
+        /// Whether each has a row of its own wherever the nodes of the two sides do not lie opposite each other.
+        singly: bool,
+    },
 }
 
 /// A tie: u is continuous across (part of) a common face.

@@ -67,6 +67,8 @@ pub struct SceneSpec {
     pub options: Vec<(String, String)>,
     /// What of the input is left out, ignored or replaced: a sentence each.
     pub notes: Vec<String>,
+    /// What else users are told: what entries leave out that many scenes have, such as boundary groups that none names.
+    pub asides: Vec<String>,
 }
 
 impl SceneSpec {
@@ -87,6 +89,7 @@ impl SceneSpec {
             exact: None,
             options: Vec::new(),
             notes: Vec::new(),
+            asides: Vec::new(),
         }
     }
 }

@@ -1,17 +1,17 @@
 //! [mesh], and bodies that are groups of its cells.
 
-use super::document::{Item, Section, Value};
+use super::conditions::Groups;
+use super::document::Item;
 use super::fields::Shape;
 use super::form::{integration, rules};
 use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
 use crate::mesh::{bytes, deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
-use crate::scene::model::body::{held, BodySpec, Cut, Force, SurfaceLoad};
-use crate::scene::model::field::Field;
+use crate::scene::model::body::{BodySpec, Cut};
 use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::quantity::unfit_size;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene.
@@ -22,7 +22,11 @@ pub(super) struct Source {
     /// The factor of all lengths.
     scale: f64,
     /// The names of groups that are rigid surfaces.
-    rigid: Vec<String>,
+    pub(super) rigid: Vec<String>,
+    /// The names of groups that are bodies.
+    pub(super) bodies: Vec<String>,
+    /// The cells that belong to bodies.
+    pub(super) taken: Vec<bool>,
 }
 
 /// The keys that only boxes have.
@@ -50,16 +54,23 @@ impl Source {
             }
         }
         Ok(Source {
+            taken: vec![false; mesh.cells.len()],
             mesh: Extractor::new(mesh, reader.dim),
             groups,
             scale: scale.unwrap_or(1.0),
             rigid: Vec::new(),
+            bodies: Vec::new(),
         })
     }
 
-    /// A sentence on nodes that are left out.
-    pub fn note(&self) -> Option<String> {
-        self.mesh.file().unused(self.mesh.dim(), &self.rigid)
+    /// The file.
+    pub fn file(&self) -> &MeshFile {
+        self.mesh.file()
+    }
+
+    /// The dimension of the cells of bodies.
+    pub fn dim(&self) -> usize {
+        self.mesh.dim()
     }
 
     /// The group of faces `name` as a rigid surface.
@@ -81,6 +92,8 @@ impl Source {
     /// The connected parts of a group of cells: one mesh each.
     fn parts(&mut self, item: &Item, name: &str) -> Result<Vec<CellMesh>> {
         let cells = self.group(item, name)?;
+        self.bodies.push(name.into());
+        cells.iter().for_each(|&c| self.taken[c as usize] = true);
         let parts = self.mesh.connected(&cells);
         let mesh = |part: &Vec<u32>| {
             let mesh = self.mesh.extract(part, self.scale)?;
@@ -153,50 +166,8 @@ impl Source {
     }
 }
 
-/// Given values by boundary group.
-type Held = Vec<(String, [Option<Field>; 3])>;
-
-/// What a body has at boundary groups. What is not there leaves a body as it is.
-#[derive(Default)]
-struct OfGroups {
-    /// Loads, each list with whether it is one of pressures.
-    forces: Vec<(bool, Vec<(String, Force)>)>,
-    springs: Option<Vec<(String, Field)>>,
-    dirichlet: Option<Held>,
-}
-
-impl OfGroups {
-    /// Gives a body what belongs to its groups, in the place of what it has.
-    fn apply(&self, body: &mut BodySpec) {
-        let mesh = body.mesh.clone();
-        for (is_pressure, list) in &self.forces {
-            let own = |load: &SurfaceLoad| matches!(load.force, Force::Pressure(_)) == *is_pressure;
-            body.surface.retain(|load| !own(load));
-            let at_sides = list.iter().filter_map(|(name, force)| {
-                let (side, force) = (mesh.side_of_name(name)?, force.clone());
-                Some(SurfaceLoad { side, force })
-            });
-            body.surface.extend(at_sides);
-        }
-        if let Some(list) = &self.springs {
-            let at_sides = list.iter();
-            let at_sides =
-                at_sides.filter_map(|(name, k)| Some((mesh.side_of_name(name)?, k.clone())));
-            body.springs = at_sides.collect();
-        }
-        if let Some(list) = &self.dirichlet {
-            body.dirichlet = vec![[const { None }; 3]; mesh.n_sides()].into();
-            for (name, given) in list {
-                if let Some(side) = mesh.side_of_name(name) {
-                    body.dirichlet[side] = given.clone();
-                }
-            }
-        }
-    }
-}
-
 /// The first few of some names.
-fn some(names: &[String]) -> String {
+pub(super) fn some(names: &[String]) -> String {
     let more = if names.len() > 12 { ", …" } else { "" };
     format!("{}{more}", names[..names.len().min(12)].join(", "))
 }
@@ -244,8 +215,7 @@ impl Reader {
         let rule = section.read("integration", integration)?;
         let parts = source.parts(item, &name)?;
         let several = parts.len() > 1;
-        let sides = parts.iter().flat_map(|part| &part.sides);
-        let names: BTreeSet<String> = sides.map(|side| side.name.clone()).collect();
+        let groups = Groups::of(&parts);
         let shape = Shape {
             mesh: BoxMesh::plane([0.0; 2], [1.0; 2], [1; 2], [1; 2]),
             bodies: None,
@@ -253,7 +223,7 @@ impl Reader {
         };
         let mut common = BodySpec::new(name.clone(), shape.mesh);
         self.material_and_load(&mut section, &shape, &mut common)?;
-        let conditions = self.conditions_of_mesh(&mut section, &names)?;
+        let conditions = self.conditions_of_mesh(&mut section, &groups)?;
         common.written = item.written();
         common.cut = cut.unwrap_or(Cut::Auto);
         let placements = section.read("instances", |item| self.placements(item))?;
@@ -283,7 +253,7 @@ impl Reader {
             };
             let copies = self.copies(&body, placements, only, |section, body| {
                 self.material_and_load(section, &shape, body)?;
-                self.conditions_of_mesh(section, &names)?.apply(body);
+                self.conditions_of_mesh(section, &groups)?.apply(body);
                 Ok(())
             })?;
             out.extend(
@@ -300,100 +270,4 @@ impl Reader {
         }
         Ok(out)
     }
-
-    /// Loads and given values of boundary groups.
-    fn conditions_of_mesh(
-        &self,
-        section: &mut Section,
-        names: &BTreeSet<String>,
-    ) -> Result<OfGroups> {
-        let mut out = OfGroups::default();
-        let keys: &[(&'static str, bool)] = match self.form.is_elastic() {
-            true => &[("traction", false), ("pressure", true)],
-            false => &[("flux", false)],
-        };
-        for &(key, is_pressure) in keys {
-            let Some(list) = self.by_group(section, key, names)? else {
-                continue;
-            };
-            let force = |(name, item): (&str, &Item)| {
-                let force = match is_pressure {
-                    true => Force::Pressure(self.formula(item)?),
-                    false => {
-                        let list = self.components(item)?.into_iter();
-                        Force::Traction(list.map(Field::Expression).collect())
-                    }
-                };
-                Ok((name.to_string(), force))
-            };
-            let list: Result<_> = list.into_iter().map(force).collect();
-            out.forces.push((is_pressure, list?));
-        }
-        if let Some(list) = self.by_group(section, "spring", names)? {
-            let spring = |(name, item): (&str, &Item)| Ok((name.to_string(), self.formula(item)?));
-            out.springs = Some(list.into_iter().map(spring).collect::<Result<_>>()?);
-        }
-        out.dirichlet = self.held_groups(section, names)?;
-        Ok(out)
-    }
-
-    /// The entries of a table whose keys are boundary groups.
-    fn by_group<'a>(
-        &self,
-        section: &mut Section<'a>,
-        key: &'static str,
-        names: &BTreeSet<String>,
-    ) -> Result<Option<Vec<(&'a str, &'a Item<'a>)>>> {
-        let Some(item) = section.take(key) else {
-            return Ok(None);
-        };
-        let table = item.section(key)?;
-        let entry = |(name, _, item): &'a (String, usize, Item<'a>)| {
-            known(item, name, names)?;
-            Ok((name.as_str(), item))
-        };
-        let entries: Result<_> = table.entries.iter().map(entry).collect();
-        entries.map(Some)
-    }
-
-    /// `dirichlet`: "all", "none", a list of groups held at zero, or a table of values.
-    fn held_groups(&self, section: &mut Section, names: &BTreeSet<String>) -> Result<Option<Held>> {
-        let Some(item) = section.take("dirichlet") else {
-            return Ok(None);
-        };
-        let list: Result<Held> = match &item.value {
-            Value::Text(text) if text == "none" => Ok(Vec::new()),
-            Value::Text(_) => {
-                let name = item.text("a boundary group")?;
-                known(item, &name, names)?;
-                Ok(vec![(name, held())])
-            }
-            Value::List(items) => {
-                let one = |item: &Item| {
-                    let name = item.text("a boundary group")?;
-                    known(item, &name, names)?;
-                    Ok((name, held()))
-                };
-                items.iter().map(one).collect()
-            }
-            _ => {
-                let list = self.by_group(section, "dirichlet", names)?;
-                let one = |(name, item): (&str, &Item)| Ok((name.to_string(), self.given(item)?));
-                list.into_iter().flatten().map(one).collect()
-            }
-        };
-        list.map(Some)
-    }
-}
-
-/// An error if no part of the body has a boundary group of this name.
-fn known(item: &Item, name: &str, names: &BTreeSet<String>) -> Result<()> {
-    if names.contains(name) {
-        return Ok(());
-    }
-    let list: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
-    item.error(format!(
-        "the boundary group `{name}`, which the body does not have (groups at it are {})",
-        some(&list)
-    ))
 }

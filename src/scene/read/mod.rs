@@ -1,6 +1,7 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
 mod cells;
+mod conditions;
 mod document;
 mod fields;
 mod form;
@@ -13,6 +14,7 @@ mod shape;
 mod sides;
 mod steps;
 mod ties;
+mod unused;
 mod values;
 
 use super::model::body::{BodySpec, Load, POISSON};
@@ -80,6 +82,15 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
             "{file}: the scene has no bodies ([[body]] or [grid] was expected)"
         )));
     }
+    let entries = unused::Entries {
+        bodies: &bodies,
+        ties: &ties,
+        contacts: &contacts,
+        obstacles: &obstacles,
+    };
+    let source = source.as_ref();
+    let notes = source.map_or(Vec::new(), |source| unused::notes(source, &entries));
+    let unnamed = source.and_then(|source| unused::unnamed(source, &entries));
     Ok(SceneSpec {
         title,
         form: reader.form,
@@ -94,7 +105,8 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
         steps,
         exact,
         options: options.unwrap_or_default(),
-        notes: source.iter().filter_map(mesh::Source::note).collect(),
+        notes,
+        asides: unnamed.into_iter().collect(),
     })
 }
 

@@ -28,8 +28,25 @@ impl Reader {
         let sides = section.read("sides", |item| self.pair_of_sides(item, &pair, bodies))?;
         let multipliers = section.read("multipliers", |item| which(item, &pair))?;
         let adjust = section.read("adjust", |item| self.positive(item))?;
-        let extent = self.extent(&mut section, item, "[[tie]]")?;
+        let tolerance = section.read("position_tolerance", |item| self.positive(item))?;
+        let mut extent = self.extent(&mut section, item, "[[tie]]")?;
         section.finish()?;
+        if let Some(tolerance) = tolerance {
+            if sides.is_none() && !matches!(pair, Pair::Surfaces(..)) {
+                return item.error(
+                    "`position_tolerance` without `surfaces` or `sides` (bodies that touch are tied where they touch)",
+                );
+            }
+            if extent != Extent::All {
+                return item.error(
+                    "`position_tolerance` together with `where`, `range`, `points` or `nodes` where one was expected",
+                );
+            }
+            extent = Extent::Within {
+                distance: tolerance,
+                singly: false,
+            };
+        }
         Ok(TieSpec {
             pair,
             sides,

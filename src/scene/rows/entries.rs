@@ -2,7 +2,9 @@
 
 use super::entry::{some_names, Contact, Entry};
 use super::facing::facing;
+use super::left_out::{self, LeftOut};
 use super::links::Links;
+use super::origin::Origin;
 use super::unmatched::unmatched;
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
@@ -15,16 +17,17 @@ use crate::scene::model::spec::{ByDefault, SceneSpec};
 use crate::scene::model::steps::{Factors, Steps};
 use std::collections::{HashMap, HashSet};
 
-/// All pairs that touch, with their ties and contacts.
+/// All pairs that touch, with their ties and contacts, and sentences on what the entries that name surfaces leave out.
 pub(crate) fn find(
     bodies: &[Body],
     mut matching: Matching<'_>,
-    spec: &SceneSpec,
+    (spec, origins): (&SceneSpec, &[Origin]),
     steps: &Option<Steps>,
-) -> Result<Vec<Interface>> {
+) -> Result<(Vec<Interface>, LeftOut)> {
     let mut interfaces = touching(bodies)?;
     unmatched(bodies, &mut matching, spec, &mut interfaces);
-    facing(bodies, matching, spec, &mut interfaces)?;
+    let far = facing(bodies, matching, spec, &mut interfaces)?;
+    let left_out = left_out::sentences(bodies, origins, &interfaces, &far);
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);
@@ -40,7 +43,7 @@ pub(crate) fn find(
     }
     entries.check_used(&interfaces)?;
     release_corners(&mut interfaces, &weak);
-    Ok(interfaces)
+    Ok((interfaces, left_out))
 }
 
 /// Joins interfaces of bodies that have moved as the contacts of `spec` say. A contact that selects none of their nodes

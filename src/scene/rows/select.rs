@@ -69,7 +69,8 @@ pub(crate) fn pick(extent: &Extent, t: &[[f64; 2]]) -> std::result::Result<Vec<u
     let all = 0..t.len();
     let mut out: Vec<usize> = match extent {
         Extent::None => Vec::new(),
-        Extent::All => all.collect(),
+        // The interface has those within a tolerance alone.
+        Extent::All | Extent::Within { .. } => all.collect(),
         Extent::Range(range) => all.filter(|&k| inside(t[k], *range)).collect(),
         Extent::Points(points) => {
             let find = |wanted| t.iter().position(|&t| near(t, wanted));
@@ -103,7 +104,7 @@ pub(crate) fn selected(
         });
     }
     let lone = match extent {
-        Extent::None | Extent::Points(_) => None,
+        Extent::None | Extent::Points(_) | Extent::Within { .. } => None,
         Extent::All => interface.unmatched.first(),
         Extent::Range(range) => interface.unmatched.iter().find(|u| inside(u.0, *range)),
         // Node numbers refer to the common face; they make sense only if both bodies have the same nodes there.

@@ -1,5 +1,6 @@
 //! Entries that name surfaces, and contacts that are found: both become entries that name bodies and their sides.
 
+use super::origin::{with, Names, Origin};
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::linalg::vec3::{dot, minus};
@@ -7,6 +8,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::facing::is_face;
 use crate::scene::geometry::interface::Interface;
 use crate::scene::geometry::matching::{apart, Matching, Mismatch};
+use crate::scene::geometry::single::Reached;
 use crate::scene::geometry::sweep::{are_apart, extent, may_face, may_meet, near};
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
@@ -21,31 +23,43 @@ const COARSER: f64 = 4.0;
 /// Up to this ratio edges count as equal.
 const EQUAL: f64 = 1.05;
 
-/// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds.
+/// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds. What the entries
+/// were that name sides is returned.
 pub(crate) fn expand(
     bodies: &[Body],
     matching: &mut Matching<'_>,
     spec: &mut SceneSpec,
-) -> Result<()> {
+) -> Result<Vec<Origin>> {
+    let names = Names::of(bodies);
+    let mut origins = Vec::new();
     let mut ties = Vec::with_capacity(spec.ties.len());
     for tie in std::mem::take(&mut spec.ties) {
         match &tie.pair {
             Pair::Surfaces(a, b) => {
+                let (reach, tolerance) = match tie.extent {
+                    Extent::Within { distance, .. } => (distance, Some(distance)),
+                    _ => (tie.adjust.max(0.0), None),
+                };
                 let found = pairs(
                     bodies,
                     matching,
                     &spec.form,
                     [a, b],
-                    (tie.multipliers, tie.adjust.max(0.0)),
+                    (tie.multipliers, reach, tolerance.is_some()),
                     &tie.written,
                 )?;
+                let entries = ties.len()..ties.len() + found.len();
+                origins.extend(Origin::of_tie(&names, &tie, entries));
                 ties.extend(found.into_iter().map(|(pair, sides)| TieSpec {
                     pair,
                     sides: Some(sides),
                     ..tie.clone()
                 }));
             }
-            _ => ties.push(tie),
+            _ => {
+                origins.extend(Origin::of_tie(&names, &tie, ties.len()..ties.len() + 1));
+                ties.push(tie);
+            }
         }
     }
     spec.ties = ties;
@@ -59,23 +73,30 @@ pub(crate) fn expand(
                     matching,
                     &spec.form,
                     [a, b],
-                    (contact.multipliers, reach),
+                    (contact.multipliers, reach, false),
                     &contact.written,
                 )?;
+                let first = spec.ties.len() + contacts.len();
+                let entries = first..first + found.len();
+                origins.extend(Origin::of_contact(&names, &contact, entries));
                 contacts.extend(found.into_iter().map(|(pair, sides)| ContactSpec {
                     pair,
                     sides: Some(sides),
                     ..contact.clone()
                 }));
             }
-            _ => contacts.push(contact),
+            _ => {
+                let first = spec.ties.len() + contacts.len();
+                origins.extend(Origin::of_contact(&names, &contact, first..first + 1));
+                contacts.push(contact);
+            }
         }
     }
     if let Some(auto) = spec.auto.clone() {
         contacts.extend(found(bodies, matching, &spec.form, &auto)?);
     }
     spec.contacts = contacts;
-    Ok(())
+    Ok(origins)
 }
 
 /// Does the same for the contacts alone, on bodies that have moved. Surfaces that do not meet any more are left out.
@@ -87,7 +108,7 @@ pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec
             continue;
         };
         let reach = contact.distance.unwrap_or(f64::INFINITY);
-        let wanted = (contact.multipliers, reach);
+        let wanted = (contact.multipliers, reach, false);
         let found = pairs(
             bodies,
             matching,
@@ -116,26 +137,16 @@ pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec
 
 type Found = (Pair, [usize; 2]);
 
-/// The pairs of bodies that have the surfaces, and whose nodes there face each other.
+/// The pairs of bodies that have the surfaces, and whose nodes there face each other, or are within a tolerance.
 fn pairs(
     bodies: &[Body],
     matching: &mut Matching<'_>,
     form: &Form,
     names: [&String; 2],
-    (multipliers, reach): (Option<usize>, f64),
+    (multipliers, reach, is_tolerance): (Option<usize>, f64, bool),
     written: &str,
 ) -> Result<Vec<Found>> {
-    let with = |name: &String| {
-        let side = |b: usize| {
-            let mesh = bodies[b].mesh();
-            mesh.cells()?;
-            Some((b, mesh.side_of_name(name)?))
-        };
-        (0..bodies.len())
-            .filter_map(side)
-            .collect::<Vec<(usize, usize)>>()
-    };
-    let lists = names.map(with);
+    let lists = names.map(|name| with(bodies, name));
     let same = names[0] == names[1];
     let fits = |first: &(usize, usize), second: &(usize, usize)| {
         first.0 != second.0 && !(same && second.0 < first.0)
@@ -186,11 +197,16 @@ fn pairs(
         if !fits(&first, &second) {
             continue;
         }
-        match matching.find([first.0, second.0], [first.1, second.1], reach) {
+        let both = ([first.0, second.0], [first.1, second.1]);
+        let which = multipliers.unwrap_or(0);
+        if is_tolerance {
+            let reached = Reached::new(bodies, form, both, which, reach);
+            out.extend((!reached.is_empty()).then(|| found(first, second)));
+            continue;
+        }
+        match matching.find(both.0, both.1, reach) {
             Ok(_) => out.push(found(first, second)),
             Err(Mismatch::Lonely) => {
-                let both = ([first.0, second.0], [first.1, second.1]);
-                let which = multipliers.unwrap_or(0);
                 if matching.mortar(form, both, which, reach).is_some() {
                     out.push(found(first, second));
                 }

@@ -1,12 +1,15 @@
 //! Models that once had a wrong answer, or were refused with a sentence that misleads: tests/data/cases.
 
 mod balances;
+mod blocks;
 mod cells;
 mod energy;
+mod left_out;
 mod motions;
 mod pins;
 mod pressures;
 mod slack;
+mod ties;
 
 use crate::support::mpi::{Output, Scratch};
 use crate::support::program::run_fetifeti;

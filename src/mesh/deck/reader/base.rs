@@ -38,6 +38,8 @@ pub(in crate::mesh::deck) struct Reader<'a> {
     pub(super) amplitude_names: HashMap<String, usize>,
     pub(super) materials: HashMap<String, u32>,
     pub(super) interactions: HashMap<String, u32>,
+    /// The contact pairs that say that nodes meet surfaces, by their lines.
+    pub(super) by_nodes: Vec<Place>,
     pub(super) state: State,
     /// Entries that are left, see [`ENTRIES`].
     pub(super) entries: usize,
@@ -62,6 +64,7 @@ impl<'a> Reader<'a> {
             amplitude_names: HashMap::new(),
             materials: HashMap::new(),
             interactions: HashMap::new(),
+            by_nodes: Vec::new(),
             state: State::default(),
             entries: ENTRIES.saturating_add(cards.lines().saturating_mul(16)),
         }

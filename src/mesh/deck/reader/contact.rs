@@ -171,7 +171,13 @@ impl<'a> Reader<'a> {
         let name = params.name("NAME")?.unwrap_or_default();
         // CalculiX takes 2.5 % of the size of an element for tolerances below 1e-10.
         let tolerance = params.real("POSITIONTOLERANCE")?.filter(|&t| t >= 1e-10);
-        let adjust = params.value("ADJUST") != Some("NO");
+        let adjust = match params.value("ADJUST") {
+            None | Some("YES") => true,
+            Some("NO") => false,
+            Some(other) => {
+                return params.error(format!("ADJUST={} is neither YES nor NO", clip(other)))
+            }
+        };
         params.skip(&["TYPE", "NOROTATION", "NOTHICKNESS"]);
         params.done()?;
         let before = self.deck.ties.len();
@@ -196,12 +202,14 @@ impl<'a> Reader<'a> {
         let mut params = Params::new(card, self.files);
         let name = params.required("INTERACTION")?;
         let kind = match params.value("TYPE") {
+            // CalculiX asks for a type; this is what Abaqus takes.
             None | Some("NODETOSURFACE") => ContactKind::NodeToSurface,
             Some("SURFACETOSURFACE") => ContactKind::SurfaceToSurface,
             Some("MORTAR" | "LINMORTAR" | "PGLINMORTAR") => ContactKind::Mortar,
             Some("MASSLESS") => ContactKind::Massless,
             Some(other) => return params.error(format!("TYPE={} is not supported", clip(other))),
         };
+        let by_nodes = params.value("TYPE") == Some("NODETOSURFACE");
         let small_sliding = params.flag("SMALLSLIDING");
         let adjust = match params.value("ADJUST") {
             None => Adjust::No,
@@ -250,6 +258,9 @@ impl<'a> Reader<'a> {
             if let Adjust::Nodes(nodes) = &adjust {
                 self.spend(nodes.len(), row.place)?;
             }
+            if by_nodes {
+                self.by_nodes.push(row.place);
+            }
             self.deck.contacts.push(ContactPair {
                 slave: self.surface_name(surfaces, row.field(0), may_be_nodes, row.place)?,
                 master: self.surface_name(surfaces, row.field(1), false, row.place)?,
@@ -283,11 +294,21 @@ impl<'a> Reader<'a> {
             return self.error(card, "the parameter VALUE= is missing");
         };
         let mut found = false;
+        let mut nodes = false;
         for pair in &mut self.deck.contacts {
             if pair.slave.name == slave && pair.master.name == master {
-                pair.clearance = Some(value);
+                let by_nodes = self.by_nodes.contains(&pair.place);
+                if !by_nodes {
+                    pair.clearance = Some(value);
+                }
+                nodes |= by_nodes;
                 found = true;
             }
+        }
+        if nodes {
+            let reason =
+                "in CalculiX it has no effect on pairs of TYPE=NODE TO SURFACE, whose gaps stay as they are";
+            self.deck.ignored.push(Self::note(card, card.place, reason));
         }
         if found {
             return Ok(());

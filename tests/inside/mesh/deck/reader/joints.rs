@@ -76,6 +76,16 @@ fn contact_and_ties() {
         refused("*TIE,CYCLIC SYMMETRY\nR,L\n"),
         "*TIE: CYCLICSYMMETRY: cyclic symmetry is not supported"
     );
+    assert_eq!(
+        refused("*TIE,ADJUST=MAYBE\nR,L\n"),
+        "*TIE: ADJUST=MAYBE is neither YES nor NO"
+    );
+    let by_nodes = "*CONTACT PAIR,INTERACTION=I,TYPE=NODE TO SURFACE\nR,L\n";
+    let deck = good(&format!("{surfaces}{by_nodes}{gap}"), "");
+    assert_eq!(deck.contacts[0].clearance, None);
+    assert!(deck.ignored[0]
+        .reason
+        .contains("in CalculiX it has no effect"));
     let only_nodes = "*SURFACE,NAME=P,TYPE=NODE\n1\n*TIE\nL,P\n";
     assert!(refused(only_nodes).starts_with("the surface P consists of nodes"));
     assert!(refused(gap).ends_with("there is no contact pair of slave R and master L"));
