@@ -34,7 +34,7 @@ impl Names {
                 return Err(scan.fail(
                     at,
                     format!(
-                        "found {} where a physical group was expected: {form} and a name of UTF-8 in double quotes",
+                        "found {} where a physical group was expected: {form} and a name of UTF-8, such as \"steel\"",
                         quoted(line)
                     ),
                 ));
@@ -51,12 +51,19 @@ impl Names {
     }
 }
 
-/// A line such as `2 5 "steel"`.
+/// A line such as `2 5 "steel"`. Some programs write the name without quotes.
 fn parse(at: usize, line: &[u8], with_dim: bool) -> Option<Name> {
     let line = std::str::from_utf8(line).ok()?;
-    let (numbers, rest) = line.split_once('"')?;
-    let (name, after) = rest.split_once('"')?;
-    let numbers: Vec<&str> = numbers.split_whitespace().collect();
+    let (numbers, name) = match line.split_once('"') {
+        Some((numbers, rest)) => {
+            let (name, after) = rest.split_once('"')?;
+            if !after.trim().is_empty() {
+                return None;
+            }
+            (numbers.split_whitespace().collect(), name)
+        }
+        None => bare(line, with_dim)?,
+    };
     let (dim, tag) = match numbers[..] {
         [dim, tag] => (Some(dim.parse().ok().filter(|&d: &usize| d <= 3)?), tag),
         [tag] if !with_dim => (None, tag),
@@ -64,10 +71,23 @@ fn parse(at: usize, line: &[u8], with_dim: bool) -> Option<Name> {
     };
     let tag = tag.parse().ok().filter(|&t: &u64| t > 0)?;
     let name = name.to_string();
-    after
-        .trim()
-        .is_empty()
-        .then_some(Name { at, dim, tag, name })
+    Some(Name { at, dim, tag, name })
+}
+
+/// The numbers before a name without quotes, and the name. Where the dimension may be missing, two numbers before a
+/// word are dimension and number.
+fn bare(line: &str, with_dim: bool) -> Option<(Vec<&str>, &str)> {
+    let mut rest = line.trim();
+    let mut numbers = Vec::new();
+    while let Some((word, after)) = rest.split_once(char::is_whitespace) {
+        if numbers.len() == 2 || word.parse::<u64>().is_err() {
+            break;
+        }
+        numbers.push(word);
+        rest = after.trim_start();
+    }
+    let enough = if with_dim { 2 } else { 1 };
+    (numbers.len() >= enough && !rest.is_empty()).then_some((numbers, rest))
 }
 
 /// The cells of each physical group, by dimension and number.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::document::{Item, Section, Value};
-use super::mesh::some;
+use super::groups::some;
 use super::Reader;
 use crate::error::Result;
 use crate::mesh::CellMesh;

@@ -4,6 +4,7 @@ use super::conditions::Groups;
 use super::document::Item;
 use super::fields::Shape;
 use super::form::{integration, rules};
+use super::groups::some;
 use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
@@ -166,12 +167,6 @@ impl Source {
     }
 }
 
-/// The first few of some names.
-pub(super) fn some(names: &[String]) -> String {
-    let more = if names.len() > 12 { ", …" } else { "" };
-    format!("{}{more}", names[..names.len().min(12)].join(", "))
-}
-
 /// Reads the mesh that an item names, beside the scene.
 pub(super) fn load_beside(file: &Item) -> Result<MeshFile> {
     let path = PathBuf::from(file.text("the name of a file")?);
@@ -188,7 +183,8 @@ pub(crate) fn load(path: &Path) -> Result<MeshFile> {
     let name = path.display().to_string();
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match ending.as_deref() {
-        Some("msh") => gmsh::load(path),
+        // Gmsh writes name.msh, and name.msh2 or name.msh41 where it is told the format.
+        Some(e) if e.trim_end_matches(|c: char| c.is_ascii_digit()) == "msh" => gmsh::load(path),
         Some("inp") => {
             let read = |file: &Path| bytes(file, "deck");
             let directory = path.parent().unwrap_or(Path::new(""));

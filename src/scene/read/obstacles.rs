@@ -1,6 +1,7 @@
 //! [[obstacle]].
 
 use super::document::{Item, Section, Value};
+use super::groups::{sides_of, some};
 use super::instances::fits;
 use super::mesh::{load_beside, Source};
 use super::ties::body_name;
@@ -44,6 +45,13 @@ impl Reader {
         let several = body.as_ref().is_some_and(|name| name.contains('*'));
         if several && meant.is_empty() {
             return named.error(format!("{} fits no body", named.value.kind()));
+        }
+        if let (Some(name), true) = (&body, meant.is_empty()) {
+            let names: Vec<String> = bodies.iter().map(|b| format!("`{}`", b.name)).collect();
+            return item.error(format!(
+                "an obstacle names body `{name}`, which the scene does not have (bodies are {})",
+                some(&names)
+            ));
         }
         let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
         let written = section.need("side", "a side, a list of them or \"all\"")?;
@@ -110,6 +118,18 @@ impl Reader {
             }
             _ => vec![item.text("a side or boundary group, a list of them or \"all\"")?],
         };
+        let has = |body: &BodySpec, name: &String| body.mesh.side_of_name(name).is_some();
+        let nowhere = |name: &&String| *name != "all" && !bodies.iter().any(|b| has(b, name));
+        if let Some(name) = names.iter().find(nowhere) {
+            let whose = match bodies {
+                [one] => format!("which body `{}` does not have", one.name),
+                _ => "which no such body has".into(),
+            };
+            return item.error(format!(
+                "the side `{name}`, {whose} (sides are {})",
+                sides_of(bodies.iter().copied())
+            ));
+        }
         let mut out = Vec::new();
         for body in bodies {
             let sides: Vec<usize> = match names.iter().any(|n| n == "all") {
@@ -124,10 +144,7 @@ impl Reader {
             }
         }
         match out.is_empty() {
-            true => item.error(format!(
-                "the side `{}`, which no such body has",
-                names.join("`, `")
-            )),
+            true => item.expected("a side, a list of them or \"all\""),
             false => Ok(out),
         }
     }

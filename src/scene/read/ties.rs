@@ -1,6 +1,7 @@
 //! [interface], [[tie]] and [[contact]].
 
 use super::document::{Item, Section, Value};
+use super::groups::sides_of;
 use super::Reader;
 use crate::error::Result;
 use crate::mesh::SideGroup;
@@ -131,9 +132,14 @@ impl Reader {
                     .is_some_and(|_| b.mesh.side_of_name(&name).is_some())
             };
             if !bodies.iter().any(|b| has(&b)) {
-                return item.error(format!(
-                    "the boundary group `{name}`, which no body of the mesh has"
-                ));
+                let of_cells = bodies.iter().filter(|b| b.mesh.cells().is_some());
+                return item.error(match of_cells.clone().next() {
+                    None => format!("the boundary group `{name}` in a scene without a mesh"),
+                    Some(_) => format!(
+                        "the boundary group `{name}`, which no body of the mesh has (groups are {})",
+                        sides_of(of_cells)
+                    ),
+                });
             }
             match bodies.iter().any(|b| has_faces(b, &name)) {
                 true => Ok(name),
@@ -172,7 +178,8 @@ impl Reader {
                         Some(found) if has_faces(body, &side) => Ok(found),
                         Some(_) => item.error(self.no_faces(&side)),
                         None => item.error(format!(
-                            "the boundary group `{side}`, which body `{name}` does not have"
+                            "the boundary group `{side}`, which body `{name}` does not have (groups are {})",
+                            sides_of([body])
                         )),
                     }
                 }

@@ -5,6 +5,7 @@ mod blocks;
 mod cells;
 mod energy;
 mod left_out;
+mod mesh_files;
 mod motions;
 mod pins;
 mod pressures;

@@ -81,3 +81,41 @@ fn many_groups_of_many_elements_are_refused() {
         "a.msh, line 25: entity 7 is in 3000 physical groups, which is too many for its elements";
     assert_eq!(message, expected);
 }
+
+/// Some programs write names without quotes: the rest of the line is the name.
+#[test]
+fn names_may_have_no_quotes() {
+    let names = |text: &str| -> Vec<String> {
+        let mesh = read("a.msh", text.as_bytes()).expect("a mesh");
+        mesh.groups.into_iter().map(|g| g.name).collect()
+    };
+    let bare = TWO
+        .replace("\"rim\"", "outer rim \t")
+        .replace("2 5 \"plate\"", " 2\t5  plate-1");
+    assert_eq!(names(&bare), ["outer rim", "plate-1"]);
+    // A number may be a name; without quotes, too.
+    assert_eq!(names(&TWO.replace("\"rim\"", "12")), ["12", "plate"]);
+    // Format 2.0 may name groups without their dimension.
+    let old = bare.replace("2.2 0 8", "2.0 0 8");
+    assert_eq!(names(&old), ["outer rim", "plate-1"]);
+    let short = old
+        .replace("1 4 outer", "4 outer")
+        .replace("2\t5  plate", "5 plate");
+    assert_eq!(names(&short), ["outer rim", "plate-1"]);
+    for wrong in [
+        "1 4",
+        "1 4 ",
+        "4 rim",
+        "1 rim",
+        "9 4 rim",
+        "1 4 rim\"",
+        "1 0 rim",
+    ] {
+        let text = TWO.replace("1 4 \"rim\"", wrong);
+        let message = read("a.msh", text.as_bytes()).unwrap_err().to_string();
+        assert!(
+            message.contains("line 6: found") && message.contains("and a name of UTF-8"),
+            "{message}"
+        );
+    }
+}

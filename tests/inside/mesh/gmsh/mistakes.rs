@@ -120,7 +120,7 @@ $MeshFormat⏎2 => $NOD⏎2
 $MeshFormat⏎2 => # a mesh⏎2
     line 1: found "# a mesh" where a section such as $Nodes was expected
 1 4 "rim" => 4 "rim"
-    line 6: found "4 \"rim\"" where a physical group was expected: dimension, number and a name of UTF-8 in
+    line 6: found "4 \"rim\"" where a physical group was expected: dimension, number and a name of UTF-8, such as
 1 4 "rim" => 5 4 "rim"
     line 6: found "5 4 \"rim\"" where
 1 4 "rim" => 2 5 "rim"
