@@ -189,6 +189,8 @@ fn wires() -> Vec<InterfaceRow> {
                 holds: true,
                 // No two wires end in the same node: every row is a block of its own.
                 block: rows.len() as u64,
+                // Coefficients of one are exact.
+                rounding: 0.0,
                 // The label says which boards the wire joins; solutions return it with the row.
                 label: RowLabel::new(RowSource::Interface(left), [None; 2]),
             });
