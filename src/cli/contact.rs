@@ -33,9 +33,8 @@ pub(super) fn by_source(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]
 /// For rows from one source: the body of the nodes with multipliers, and its side on which they lie. `None` where
 /// bodies meet in less than a side.
 pub(super) fn side(scene: &Scene, rows: &[SolvedRow]) -> Option<(usize, usize)> {
-    let first = rows.first()?;
-    let body = carrier(scene, first)?.body;
-    Some((body, scene.side_of(first.label.source, body)?))
+    let source = rows.first()?.label.source;
+    scene.sides_of(source).get(scene.carrier(source)).copied()
 }
 
 /// The node with the multiplier of a row.
@@ -52,6 +51,14 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     let interface = &scene.interfaces[k];
     let [a, b] = interface.order.map(|o| interface.bodies[o]);
     let body = |b: usize| &scene.bodies[b].spec.name;
+    if a == b {
+        // A body that touches itself does so with two sides.
+        let [first, second] = interface.order.map(|o| {
+            let mesh = scene.bodies[a].mesh();
+            format!("{}.{}", body(a), mesh.side_name(interface.sides[o]))
+        });
+        return format!("{first}|{second}");
+    }
     format!("{}|{}", body(a), body(b))
 }
 

@@ -318,15 +318,8 @@ fn line_marks(
 fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {
-        let Some((first, one)) = side(scene, rows) else {
-            continue;
-        };
-        let mut sides = vec![(0, first, one)];
-        if let Some(second) = rows[0].label.members[1] {
-            let other = scene.side_of(rows[0].label.source, second.body);
-            sides.extend(other.map(|side| (1, second.body, side)));
-        }
-        for (member, body, side) in sides {
+        let sides = scene.sides_of(rows[0].label.source);
+        for (member, (body, side)) in sides.into_iter().enumerate() {
             // The state of each node; `None`: tied.
             let state = |row: &SolvedRow| row.is_inequality().then(|| row.holds());
             let node = |row: &SolvedRow| Some((row.label.members[member]?.node, state(row)));

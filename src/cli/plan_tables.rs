@@ -72,8 +72,9 @@ pub(super) fn interfaces(scene: &Scene, plan: &Plan) -> String {
         .map(|(k, i)| (i, scene.side_pair(k)))
         .collect();
     let table = Table::of(&listed)
-        .words("touch", |(i, _)| {
-            format!("{} - {}", name(i.bodies[0]), name(i.bodies[1]))
+        .words("touch", |(i, _)| match i.bodies {
+            [a, b] if a == b => format!("{} - itself", name(a)),
+            [a, b] => format!("{} - {}", name(a), name(b)),
         })
         .numbers("nodes", |(i, _)| i.nodes)
         .numbers("tied", |(i, _)| i.tied)

@@ -90,7 +90,11 @@ pub(super) fn report(
         }),
         notes: scene.sentences(),
         free_motions: doubts::recorded(scene, &solver.free_motions()),
-        warnings: [scene.warnings.clone(), doubts::beyond(session, scene, course)].concat(),
+        warnings: [
+            scene.warnings.clone(),
+            doubts::beyond(session, scene, course),
+        ]
+        .concat(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: solver.communication(),

@@ -41,8 +41,19 @@ impl Defect {
     }
 }
 
-/// The defects of a mesh, at most one of each kind. Equations join the nodes `joined` to others: they may be there
-/// twice, and hang.
+/// The nodes of sides that a joint names two of: a body that touches or ties itself may have nodes of one on the other.
+pub fn of_both_sides<'a>(
+    mesh: &CellMesh,
+    joints: impl IntoIterator<Item = [&'a str; 2]>,
+) -> HashSet<u32> {
+    let side = |name: &str| mesh.sides.iter().find(|s| s.name == name);
+    let both = joints.into_iter().filter(|[a, b]| a != b);
+    let both = both.filter_map(|[a, b]| Some([side(a)?, side(b)?]));
+    both.flatten().flat_map(|s| &s.nodes).copied().collect()
+}
+
+/// The defects of a mesh, at most one of each kind. Equations, ties and contacts join the nodes `joined` to others:
+/// they may be there twice, and hang.
 pub fn defects(mesh: &CellMesh, joined: &HashSet<u32>) -> Vec<Defect> {
     let kinds = [doubled(mesh, joined), hanging(mesh, joined), folded(mesh)];
     kinds.into_iter().flatten().collect()

@@ -26,7 +26,7 @@ pub use boxes::{places, Block, BoxMesh};
 pub use cell_mesh::{CellMesh, SideGroup, SKIN};
 pub use cells::Cells;
 pub use congruent::{congruent, Outline};
-pub use defects::{defects, Defect};
+pub use defects::{defects, of_both_sides, Defect};
 pub(crate) use digits::Digits;
 pub use extract::Extractor;
 pub(crate) use file::{bytes, text, FARTHEST};

@@ -184,10 +184,9 @@ impl Scene {
     ) -> BTreeSet<(usize, usize)> {
         let mut out = BTreeSet::new();
         for (k, interface) in self.interfaces.numbered() {
-            let bodies = interface.bodies.into_iter().filter(|&b| of(b));
-            for body in bodies.filter(|_| interface.has_contact()) {
-                let side = self.side_of(RowSource::Interface(k), body);
-                out.extend(side.map(|side| (body, side)));
+            if interface.has_contact() {
+                let sides = self.sides_of(RowSource::Interface(k)).into_iter();
+                out.extend(sides.filter(|(body, _)| of(*body)));
             }
         }
         let obstacles = self.obstacles.iter().filter(|o| of(o.body));

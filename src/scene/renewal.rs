@@ -289,7 +289,7 @@ fn sides(
             continue;
         };
         let which = contact.multipliers.unwrap_or(0);
-        let (pair, sides, which) = match a < b {
+        let (pair, sides, which) = match a <= b {
             true => ([a, b], sides, which),
             false => ([b, a], [sides[1], sides[0]], 1 - which),
         };

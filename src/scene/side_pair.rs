@@ -95,7 +95,8 @@ impl Scene {
             return out;
         }
         let spec = &self.bodies[interface.bodies[0]].spec;
-        let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[0]).collect();
+        let mut shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[0]).collect();
+        shared.extend(interface.common(&self.bodies));
         for face in spec.faces(interface.sides[0]) {
             if face.nodes.iter().all(|node| shared.contains(node)) {
                 let areas = spec.face_areas(interface.sides[0], &face, &self.form);

@@ -170,11 +170,8 @@ impl<'a> Sliders<'a> {
             out.over_face = out.over_face.max(slid / size);
             touching.extend(members.into_iter().flatten());
         }
-        let bodies: FxHashSet<usize> = touching.iter().map(|m| m.body).collect();
-        for body in bodies {
-            let side = self.scene.side_of(source, body);
-            let faces = side.and_then(|side| self.faces.get(&(body, side)));
-            for face in faces.into_iter().flatten() {
+        for (body, side) in self.scene.sides_of(source) {
+            for face in self.faces.get(&(body, side)).into_iter().flatten() {
                 let nodes = face.iter().map(|&node| BodyNode { body, node });
                 if nodes.clone().any(|node| touching.contains(&node)) {
                     out.turned = out.turned.max(self.turned(nodes, u));

@@ -45,7 +45,7 @@ fn contacts() {
     );
     check(
         &pair("[[contact]]\nbodies = [\"b\", \"b\"]\n"),
-        "s.toml:11: a contact names body `b` twice where two bodies were expected",
+        "s.toml:11: a contact names body `b` twice where two bodies were expected (or `sides`, two sides of it)",
     );
     let apart = body("a", "[0, 0]", "") + &body("b", "[1.5, 0]", "");
     check(

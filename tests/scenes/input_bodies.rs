@@ -98,7 +98,7 @@ fn ties() {
     );
     check(
         &tie("bodies = [\"a\", \"a\"]"),
-        "s.toml:11: a tie names body `a` twice where two bodies were expected",
+        "s.toml:11: a tie names body `a` twice where two bodies were expected (or `sides`, two sides of it)",
     );
     check(
         &tie("bodies = \"some\""),

@@ -65,7 +65,7 @@ fn surfaces_that_cannot_meet_are_refused() {
     );
     refuses(
         ["a_top", "a_bottom"],
-        "the surfaces `a_top` and `a_bottom` do not meet: only body `a` has them",
+        "side `a_top` of `a` and side `a_bottom` of `a` overlap by 1, where `a` is 1 thick",
     );
     refuses(
         ["a_bottom", "b_top"],

@@ -6,6 +6,7 @@ use super::shells;
 use super::system::System;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
+use crate::parallel::exchange::any;
 use crate::petsc::extreme_eigenvalues;
 use crate::Result;
 
@@ -15,12 +16,13 @@ use crate::Result;
 /// a Rayleigh quotient of 1 plus this tolerance is as good.
 const TOLERANCE: f64 = 4e-7;
 
-/// The extreme eigenvalues of P M⁻¹ Pᵀ F by SLEPc; `None` without multipliers. Collective.
+/// The extreme eigenvalues of P M⁻¹ Pᵀ F by SLEPc; `None` without multipliers, or where no row holds. Collective.
 ///
 /// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range
 /// of G are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
 pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
-    if system.dual().stiffness.jump.n_global == 0 {
+    let holds = system.dual().stiffness.jump.active.contains(&true);
+    if !any(system.session.comm(), holds) {
         return Ok(None);
     }
     let a = match system.deflation().is_some() {

@@ -82,7 +82,8 @@ impl Rows {
     }
 
     /// The same without entries below `part` of the largest in their row, each relative to the `scale` of its column: a
-    /// body that moves across a normal which rounding has turned a little does no work there.
+    /// body that moves across a normal which rounding has turned a little does no work there. Sums below `part` of
+    /// their terms are left out, too: a body that touches itself moves along with what it touches.
     pub fn without_rounding(
         n: usize,
         entries: &[(u32, u32, f64)],
@@ -90,6 +91,13 @@ impl Rows {
         part: f64,
     ) -> Rows {
         let mut all = Csr::from_triplets(n, entries);
+        let sizes = entries.iter().map(|&(i, c, v)| (i, c, v.abs()));
+        let sizes = Csr::from_triplets(n, &sizes.collect::<Vec<_>>());
+        for (v, size) in all.val.iter_mut().zip(&sizes.val) {
+            if v.abs() <= part * size {
+                *v = 0.0;
+            }
+        }
         for i in 0..n {
             let row = all.row_ptr[i]..all.row_ptr[i + 1];
             let columns = &all.col[row.clone()];

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashSet};
 use super::bodies::Extracted;
 use super::numbers::Numbers;
 use crate::mesh::deck::Deck;
-use crate::mesh::{defects, Defect};
+use crate::mesh::{defects, of_both_sides, Defect};
 
 /// A sentence for each kind of defect in the bodies of a deck.
 pub(super) fn notes(deck: &Deck, numbers: &Numbers, meshes: &[Extracted]) -> Vec<String> {
@@ -19,11 +19,18 @@ pub(super) fn notes(deck: &Deck, numbers: &Numbers, meshes: &[Extracted]) -> Vec
     }
     // By what was expected, which each kind has of its own.
     let mut found: BTreeMap<&str, Defect> = BTreeMap::new();
-    for (mesh, joined) in meshes.iter().zip(&joined) {
+    let ties = deck.ties.iter().map(|t| [&t.slave, &t.master]);
+    let contacts = deck.contacts.iter().map(|c| [&c.slave, &c.master]);
+    let joints: Vec<[&str; 2]> = ties
+        .chain(contacts)
+        .map(|both| both.map(|surface| surface.name.as_str()))
+        .collect();
+    for (mesh, joined) in meshes.iter().zip(&mut joined) {
         // A mesh that cannot be extracted gets its sentence when the scene is made.
         let Ok(mesh) = mesh else {
             continue;
         };
+        joined.extend(of_both_sides(mesh, joints.iter().copied()));
         for defect in defects(mesh, joined) {
             let known = found.get_mut(defect.expected);
             match known {

@@ -147,6 +147,8 @@ pub(crate) fn opposite(
     };
     let flip = (0..4).min_by(|&x, &y| total(x).total_cmp(&total(y)))?;
     let pairs = (0..m * n).map(|i| [lists[0][i], lists[1][partner(i, flip)]]);
+    // Two sides of one body may have common nodes: these have nothing opposite.
+    let pairs = pairs.filter(|nodes| pair[0] != pair[1] || nodes[0] != nodes[1]);
     let shared = share(&a.spec, sides[0], pairs.collect());
     Some(interface(bodies, pair, sides, Shape::Face, shared))
 }

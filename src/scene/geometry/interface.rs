@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::mortar_sides::Mortar;
+use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 
 /// Two positions are equal if they differ by less than this fraction of the smaller element.
@@ -112,6 +113,20 @@ impl Interface {
         let mut all = keep.iter();
         self.distances
             .retain(|_| *all.next().expect("a flag for each"));
+    }
+
+    /// The nodes that both sides of a body that touches itself have, as at the tip of a crack: they are closed, and
+    /// have no row.
+    pub(crate) fn common(&self, bodies: &[Body]) -> Vec<usize> {
+        let [a, b] = self.bodies;
+        if a != b || self.shape == Shape::Corner {
+            return Vec::new();
+        }
+        let mesh = bodies[a].mesh();
+        let other = mesh.side_nodes(self.sides[1]);
+        let mut nodes = mesh.side_nodes(self.sides[0]);
+        nodes.retain(|node| other.binary_search(node).is_ok());
+        nodes
     }
 
     /// Whether some of its nodes are in contact.

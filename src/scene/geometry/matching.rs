@@ -115,14 +115,18 @@ fn join(
     let slacks = [slack(a, b, reach), slack(b, a, reach)];
     let may_meet_a = |x: [f64; 3]| !are_disjoint(&[x, x], &a.bounds, slacks[0]);
     let may_meet_b = |x: [f64; 3]| !are_disjoint(&[x, x], &b.bounds, slacks[1]);
+    // Two sides of one body may have common nodes, as at the tip of a crack: these have nothing opposite.
+    let common =
+        |node: &usize, of: &Surface| pair[0] == pair[1] && of.nodes.binary_search(node).is_ok();
     let mut pairs = Vec::new();
     let mut lonely = false;
     for (i, &node) in a.nodes.iter().enumerate() {
-        if !may_meet_b(a.points[i]) {
+        if !may_meet_b(a.points[i]) || common(&node, b) {
             continue;
         }
         let (point, normals) = (a.points[i], &a.normals[i]);
         match b.opposite(point, normals, MATCH * a.edges[i], reach) {
+            Some(other) if common(&b.nodes[other], a) => {}
             Some(other) => pairs.push([node, b.nodes[other]]),
             None if b.covers(point, normals, near(a, i), 2.0 * MATCH) => {
                 lonely = true;
@@ -134,7 +138,7 @@ fn join(
     lonely |= pairs.iter().any(|p| !taken.insert(p[1]));
     for (j, &node) in b.nodes.iter().enumerate() {
         let normals = &b.normals[j];
-        if !may_meet_a(b.points[j]) {
+        if !may_meet_a(b.points[j]) || common(&node, a) {
             continue;
         }
         if !taken.contains(&node) && a.covers(b.points[j], normals, near(b, j), 2.0 * MATCH) {

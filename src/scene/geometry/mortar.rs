@@ -33,7 +33,10 @@ pub(crate) fn interface(
     let specs = order.map(|k| &bodies[pair[k]].spec);
     let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]], form.element));
     let reach = mortar::reach(&own.0, &other.0, reach);
-    let surfaces = Surfaces::new([own, other], reach);
+    let surfaces = match Surfaces::new([own, other], reach) {
+        surfaces if pair[0] == pair[1] => surfaces.of_one_body(),
+        surfaces => surfaces,
+    };
     of_surfaces(bodies, form, (pair, sides), multipliers, (surfaces, None))
 }
 

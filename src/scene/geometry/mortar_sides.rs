@@ -27,6 +27,9 @@ pub(crate) struct Surfaces {
     samples: Vec<Sample>,
     /// The rows of nodes that are held one by one, in the place of integrals.
     single: Option<Vec<BodyRow>>,
+    /// Nodes that two sides of one body have in common, as at the tip of a crack: they carry no multiplier, since there
+    /// is nothing opposite but themselves.
+    common: HashSet<usize>,
 }
 
 impl Surfaces {
@@ -37,7 +40,16 @@ impl Surfaces {
             sides: [own.0, other.0],
             nodes: [own.1, other.1],
             single: None,
+            common: HashSet::new(),
         }
+    }
+
+    /// The same for two sides of one body.
+    pub fn of_one_body(mut self) -> Surfaces {
+        let own: HashSet<usize> = self.nodes[0].iter().copied().collect();
+        let both = self.nodes[1].iter().copied();
+        self.common = both.filter(|node| own.contains(node)).collect();
+        self
     }
 
     /// Sides of which nodes of the first are held one by one, by these rows.
@@ -47,6 +59,7 @@ impl Surfaces {
             sides: [own.0, other.0],
             nodes: [own.1, other.1],
             single: Some(rows),
+            common: HashSet::new(),
         }
     }
 
@@ -85,7 +98,10 @@ impl Surfaces {
             true => form.around(x),
             false => 1.0,
         };
-        let left_out = |k: u32| excluded(self.nodes[0][k as usize]);
+        let left_out = |k: u32| {
+            let node = self.nodes[0][k as usize];
+            self.common.contains(&node) || excluded(node)
+        };
         let [side, other] = [&self.sides[0], &self.sides[1]];
         let rows = mortar::rows(side, other, &self.samples, &left_out, &around);
         let in_bodies = |row: Row| BodyRow {

@@ -8,7 +8,9 @@ use super::groups::some;
 use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
-use crate::mesh::{bytes, deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
+use crate::mesh::{
+    bytes, deck, defects, gmsh, of_both_sides, BoxMesh, CellMesh, Extractor, Members, MeshFile,
+};
 use crate::scene::model::body::{BodySpec, Cut};
 use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::quantity::unfit_size;
@@ -28,6 +30,8 @@ pub(super) struct Source {
     pub(super) bodies: Vec<String>,
     /// The cells that belong to bodies.
     pub(super) taken: Vec<bool>,
+    /// The pairs of groups that entries of [[tie]] and [[contact]] name.
+    pub joints: Vec<[String; 2]>,
 }
 
 /// The keys that only boxes have.
@@ -61,6 +65,7 @@ impl Source {
             scale: scale.unwrap_or(1.0),
             rigid: Vec::new(),
             bodies: Vec::new(),
+            joints: Vec::new(),
         })
     }
 
@@ -235,7 +240,9 @@ impl Reader {
             if several {
                 body.name = format!("{name}.{}", k + 1);
             }
-            if let Some(defect) = defects(&mesh, &HashSet::new()).first() {
+            let joints = source.joints.iter().map(|j| [&j[0][..], &j[1][..]]);
+            let joined = of_both_sides(&mesh, joints);
+            if let Some(defect) = defects(&mesh, &joined).first() {
                 let (name, first, expected) = (&body.name, &defect.first, defect.expected);
                 return item.error(format!("body `{name}`: {first} ({expected})"));
             }

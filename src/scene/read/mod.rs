@@ -57,6 +57,10 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
     let mut source = scene.read("mesh", |item| mesh::Source::read(&reader, item))?;
     let grids = scene.each("grid", |item| Ok(reader.grid(item)?.expand()))?;
     let mut bodies = grids.concat();
+    if let Some(source) = &mut source {
+        let entries = [scene.tables("tie")?, scene.tables("contact")?];
+        source.joints = ties::named_sides(entries.into_iter().flatten());
+    }
     for item in scene.tables("body")? {
         match &mut source {
             Some(source) if mesh::Source::has(item) => {

@@ -260,6 +260,24 @@ impl Reader {
     }
 }
 
+/// The pairs of sides that entries name, as far as they can be read.
+pub(super) fn named_sides<'a>(entries: impl Iterator<Item = &'a Item<'a>>) -> Vec<[String; 2]> {
+    let pair = |entry: &'a Item<'a>| {
+        let Value::Table(keys) = &entry.value else {
+            return None;
+        };
+        let named = |k: &&(String, usize, Item<'a>)| k.0 == "surfaces" || k.0 == "sides";
+        match &keys.iter().find(named)?.2.value {
+            Value::List(list) => match &list[..] {
+                [a, b] => Some([a.text("").ok()?, b.text("").ok()?]),
+                _ => None,
+            },
+            _ => None,
+        }
+    };
+    entries.filter_map(pair).collect()
+}
+
 /// Whether the boundary group of a body has faces.
 fn has_faces(body: &BodySpec, name: &str) -> bool {
     let of_name = |s: &&SideGroup| s.name == name;

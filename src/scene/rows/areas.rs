@@ -12,7 +12,8 @@ impl Scene {
         self.dim() == 3 || self.form.is_elastic()
     }
 
-    /// The side of a body on which rows from `source` lie; `None` if the interface is no face.
+    /// The side of a body on which rows from `source` lie, and the first of them if it touches itself; `None` if the
+    /// interface is no face.
     pub fn side_of(&self, source: RowSource, body: usize) -> Option<usize> {
         match source {
             RowSource::Obstacle(k) => Some(self.obstacles[k].side),
@@ -21,6 +22,23 @@ impl Scene {
                 let interface = &self.interfaces[k];
                 let which = interface.bodies.iter().position(|&b| b == body)?;
                 (interface.shape == Shape::Face).then_some(interface.sides[which])
+            }
+        }
+    }
+
+    /// The bodies on which rows from `source` lie, in the order of the rows' members, each with its side. It is empty
+    /// if the interface is no face.
+    pub(crate) fn sides_of(&self, source: RowSource) -> Vec<(usize, usize)> {
+        match source {
+            RowSource::Obstacle(k) => vec![(self.obstacles[k].body, self.obstacles[k].side)],
+            RowSource::Equation(_) => Vec::new(),
+            RowSource::Interface(k) => {
+                let interface = &self.interfaces[k];
+                let of = |k: usize| (interface.bodies[k], interface.sides[k]);
+                match interface.shape {
+                    Shape::Face => interface.order.map(of).to_vec(),
+                    Shape::Corner => Vec::new(),
+                }
             }
         }
     }
@@ -71,6 +89,8 @@ fn areas(scene: &Scene, source: RowSource, body: usize) -> HashMap<usize, f64> {
             let interface = &scene.interfaces[k];
             let which = usize::from(interface.bodies[0] != body);
             areas.extend(interface.shared.iter().map(|s| (s.nodes[which], 0.0)));
+            let common = interface.common(&scene.bodies).into_iter();
+            areas.extend(common.map(|node| (node, 0.0)));
         }
         RowSource::Obstacle(_) => {
             let nodes = spec.mesh.side_nodes(side).into_iter();

@@ -1,5 +1,6 @@
 //! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
 
+use super::entry::both;
 use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::{Inequality, Point, PointRow};
@@ -82,9 +83,10 @@ impl<'a> Checks<'a> {
                 let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
                 let at = members[0].spot(self.bodies);
                 Err(Error::Input(format!(
-                    "{}bodies `{a}` and `{b}` {why} at {at}{}, which contradicts their contact \
+                    "{}{} {why} at {at}{}, which contradicts their contact \
                      (u of `{a}` − u of `{b}` ≤ {gap} was expected)",
                     self.place(entry, members[1]),
+                    both(a, b),
                     factors.when()
                 )))
             };

@@ -1,6 +1,6 @@
 //! The joints between touching bodies: the default, and the entries of [[tie]] and [[contact]].
 
-use super::entry::{some_names, Contact, Entry};
+use super::entry::{both, some_names, Contact, Entry};
 use super::facing::facing;
 use super::left_out::{self, LeftOut};
 use super::links::Links;
@@ -154,9 +154,9 @@ impl<'a> Entries<'a> {
                 })
             };
             let (a, b) = (find(first)?, find(second)?);
-            if a == b {
+            if a == b && entry.own.is_none() {
                 return Err(Error::Input(format!(
-                    "{}a {} names body `{first}` twice where two bodies were expected",
+                    "{}a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)",
                     entry.written,
                     entry.what()
                 )));
@@ -206,9 +206,10 @@ impl<'a> Entries<'a> {
                     if selected == 0 && *entry.extent != Extent::None && !self.moved {
                         let [a, b] = links.names();
                         return Err(Error::Input(format!(
-                            "{}the {} of bodies `{a}` and `{b}` selects no node of their common face",
+                            "{}the {} of {} selects no node of their common face",
                             entry.written,
-                            entry.what()
+                            entry.what(),
+                            both(a, b)
                         )));
                     }
                 }

@@ -66,6 +66,14 @@ impl<'a> Entry<'a> {
     }
 }
 
+/// Two bodies in messages, or the two sides of one that touches itself.
+pub(crate) fn both(a: &str, b: &str) -> String {
+    match a == b {
+        true => format!("both sides of body `{a}`"),
+        false => format!("bodies `{a}` and `{b}`"),
+    }
+}
+
 /// The first few names, for messages.
 pub(crate) fn some_names(bodies: &[Body]) -> String {
     let mut names: Vec<String> = bodies

@@ -52,8 +52,14 @@ pub(super) fn facing(
             // The check of entries that name bodies reports this error.
             continue;
         };
+        if a == b && sides[0] == sides[1] {
+            let side = bodies[a].mesh().side_name(sides[0]);
+            return entry.error(&format!(
+                "the side `{side}` of body `{first}` is named twice (two of its sides were expected)"
+            ));
+        }
         // The first body of the entry carries the multipliers, unless it says something else.
-        let (pair, sides, which) = match a < b {
+        let (pair, sides, which) = match a <= b {
             true => ([a, b], sides, entry.which),
             false => ([b, a], [sides[1], sides[0]], 1 - entry.which),
         };
@@ -163,9 +169,11 @@ impl Named<'_> {
                     let Pair::Named(a, b) = self.pair else {
                         unreachable!("who names sides names bodies")
                     };
-                    Err(format!(
-                        "the sides of bodies `{a}` and `{b}` do not face each other"
-                    ))
+                    let who = match a == b {
+                        true => format!("body `{a}`"),
+                        false => format!("bodies `{a}` and `{b}`"),
+                    };
+                    Err(format!("the sides of {who} do not face each other"))
                 }
             },
             _ => match matching.find(pair, sides, self.reach()) {

@@ -1,6 +1,6 @@
 //! The links of one interface: the state of its nodes after all entries.
 
-use super::entry::{Contact, Entry};
+use super::entry::{both, Contact, Entry};
 use super::select::{is_end, selected, Parameters};
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
@@ -75,10 +75,11 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
                 }
                 let [a, b] = self.names();
                 return Err(Error::Input(format!(
-                    "{}the contact of bodies `{a}` and `{b}` selects the node at t = {}, \
+                    "{}the contact of {} selects the node at t = {}, \
                      which the tie of {} selects too \
                      (ranges that share no more than their ends were expected)",
                     entry.written,
+                    both(a, b),
                     Parameters(t),
                     tie.line()
                 )));
@@ -131,8 +132,9 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         };
         let ([a, b], at) = (self.names(), body.spec.spot(at));
         Err(Error::Input(format!(
-            "{}the gap of bodies `{a}` and `{b}` is {value:e} at {at} where {expected}",
-            entry.written
+            "{}the gap of {} is {value:e} at {at} where {expected}",
+            entry.written,
+            both(a, b)
         )))
     }
 

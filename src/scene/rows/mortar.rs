@@ -104,6 +104,14 @@ pub(crate) fn collect(
     Ok((out, notes))
 }
 
+/// Terms with each degree of freedom once: sides of one body may have common nodes.
+fn merged(mut terms: Vec<(u64, f64)>) -> Vec<(u64, f64)> {
+    terms.sort_by_key(|t| t.0);
+    let same = terms.chunk_by(|a, b| a.0 == b.0);
+    same.map(|t| (t[0].0, t.iter().map(|t| t.1).sum()))
+        .collect()
+}
+
 /// Nodes that are tied at a point.
 fn tied_at(points: &[Point]) -> HashSet<BodyNode> {
     let mut out = HashSet::new();
@@ -291,6 +299,9 @@ impl<'a> Pairing<'a> {
                 terms.extend(along.terms.into_iter().map(|(dof, n)| (dof, sign * v * n)));
                 given[first] += v * along.given;
             }
+        }
+        if self.interface.bodies[0] == self.interface.bodies[1] {
+            terms = merged(terms);
         }
         let members = self.interface.order.map(|k| BodyNode {
             body: self.interface.bodies[k],

@@ -1,5 +1,6 @@
 //! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
 
+use super::entry::both;
 use super::meeting::{Meeting, Pair};
 use super::reach::Reach;
 use crate::error::{Error, Result};
@@ -202,9 +203,12 @@ impl BodyNode {
     pub(crate) fn point(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
         let first = members[0];
         let body = &bodies[first.body];
+        // A body that touches itself has several nodes at the point.
+        let own = members.iter().filter(|m| m.body == first.body);
+        let owner = own.map(|m| body.mesh().owner(m.node)).min();
         Point {
             block: first.dof(bodies, 0),
-            subdomain: body.first_subdomain + body.mesh().owner(first.node),
+            subdomain: body.first_subdomain + owner.expect("a point has a node"),
             tied_to: (0..members.len()).collect(),
             rows: Vec::new(),
             members,
@@ -294,11 +298,10 @@ fn prescribe(
             match own {
                 Some(other) if !agree(value, other) => {
                     return Err(Error::Input(format!(
-                        "{}bodies `{}` and `{}` are tied at {}, where they prescribe {value} and {other} \
+                        "{}{} are tied at {}, where they prescribe {value} and {other} \
                          (equal values were expected)",
                         bodies[m.body].spec.written,
-                        bodies[tied[k].body].spec.name,
-                        bodies[m.body].spec.name,
+                        both(&bodies[tied[k].body].spec.name, &bodies[m.body].spec.name),
                         m.spot(bodies),
                     )));
                 }

@@ -20,6 +20,9 @@ pub(super) const NEAR: f64 = 0.1;
 /// Up to this ratio of the edges the coarser side carries multipliers.
 const COARSER: f64 = 4.0;
 
+/// A body is thicker than this part of the edges on its sides.
+const THIN: f64 = 1e-3;
+
 /// Up to this ratio edges count as equal.
 const EQUAL: f64 = 1.05;
 
@@ -137,7 +140,8 @@ pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec
 
 type Found = (Pair, [usize; 2]);
 
-/// The pairs of bodies that have the surfaces, and whose nodes there face each other, or are within a tolerance.
+/// The pairs of bodies that have the surfaces, and whose nodes there face each other, or are within a tolerance. A body
+/// that has both may touch itself.
 fn pairs(
     bodies: &[Body],
     matching: &mut Matching<'_>,
@@ -148,8 +152,9 @@ fn pairs(
 ) -> Result<Vec<Found>> {
     let lists = names.map(|name| with(bodies, name));
     let same = names[0] == names[1];
-    let fits = |first: &(usize, usize), second: &(usize, usize)| {
-        first.0 != second.0 && !(same && second.0 < first.0)
+    let fits = |first: &(usize, usize), second: &(usize, usize)| match first.0 == second.0 {
+        true => first.1 != second.1,
+        false => !(same && second.0 < first.0),
     };
     // The last of all pairs, first body by first body: its sentence is told if none meets.
     let last = lists[0].iter().rev().find_map(|first| {
@@ -159,18 +164,11 @@ fn pairs(
     let Some(last) = last else {
         let body = lists[0].first().or(lists[1].first());
         let body = body.map_or("", |b| bodies[b.0].spec.name.as_str());
-        return Err(Error::Input(match same {
-            true => format!(
-                "{written}the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
-                 expected)",
-                names[0]
-            ),
-            false => format!(
-                "{written}the surfaces `{}` and `{}` do not meet: only body `{body}` has them (sides of two bodies \
-                 were expected)",
-                names[0], names[1]
-            ),
-        }));
+        return Err(Error::Input(format!(
+            "{written}the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
+             expected, or two sides of one body: the parts of its surface that meet)",
+            names[0]
+        )));
     };
     let found = |first: (usize, usize), second: (usize, usize)| {
         let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
@@ -204,14 +202,14 @@ fn pairs(
             out.extend((!reached.is_empty()).then(|| found(first, second)));
             continue;
         }
-        match matching.find(both.0, both.1, reach) {
-            Ok(_) => out.push(found(first, second)),
-            Err(Mismatch::Lonely) => {
-                if matching.mortar(form, both, which, reach).is_some() {
-                    out.push(found(first, second));
-                }
-            }
-            Err(Mismatch::Apart(_)) => {}
+        let edge = shortest(&matching.surface(first.0, first.1).edges);
+        let met = match matching.find(both.0, both.1, reach) {
+            Ok(interface) => Some(interface),
+            Err(Mismatch::Lonely) => matching.mortar(form, both, which, reach).as_ref(),
+            Err(Mismatch::Apart(_)) => None,
+        };
+        if met.is_some_and(|interface| !is_through(interface, edge)) {
+            out.push(found(first, second));
         }
     }
     if out.is_empty() {
@@ -306,6 +304,13 @@ fn carrier([a, b]: [f64; 2], extents: [f64; 2]) -> usize {
     } else {
         1 - coarser
     }
+}
+
+/// Whether two sides of one body, with edges of this length, seem to face each other through it, as those of a plate of
+/// one layer do.
+fn is_through(interface: &Interface, edge: f64) -> bool {
+    let [a, b] = interface.bodies;
+    a == b && interface.distances.iter().all(|d| *d < -THIN * edge)
 }
 
 /// Whether two sides, of which one at least is a box's, are no pair although some of their nodes face each other: they

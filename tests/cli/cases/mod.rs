@@ -7,6 +7,8 @@ mod energy;
 mod left_out;
 mod mesh_files;
 mod motions;
+mod own_contact;
+mod own_meshes;
 mod pins;
 mod pressures;
 mod slack;
