@@ -32,10 +32,33 @@ pub(super) struct Card {
     data: Range<usize>,
 }
 
+impl Card {
+    pub fn new(keyword: &str, place: Place, params: Vec<Param>, data: Range<usize>) -> Card {
+        Card {
+            keyword: keyword.into(),
+            place,
+            params,
+            data,
+        }
+    }
+
+    /// The same with other parameters and other lines.
+    pub fn with(&self, params: Vec<Param>, data: Range<usize>) -> Card {
+        Card::new(&self.keyword, self.place, params, data)
+    }
+
+    /// Its data lines, as places among the lines of the deck.
+    pub fn lines(&self) -> Range<usize> {
+        self.data.clone()
+    }
+}
+
 /// A line that is neither empty nor a comment.
 #[derive(Debug, Clone)]
-struct Line {
+pub(super) struct Line {
     place: Place,
+    /// The text in which it is: that of its file, or one that was made of it.
+    text: u32,
     bytes: Range<usize>,
 }
 
@@ -81,6 +104,24 @@ impl Cards {
     /// The data lines of `card`.
     pub fn rows<'a>(&'a self, card: &Card) -> impl Iterator<Item = Row<'a>> + 'a {
         card.data.clone().map(|l| self.row(l))
+    }
+
+    /// Line `l`, for cards that are [`rewritten`](Self::rewritten).
+    pub fn line_of(&self, l: usize) -> Line {
+        self.lines[l].clone()
+    }
+
+    /// A line of the text of cards that are rewritten, in the place of one at `place`.
+    pub fn new_line(&self, place: Place, bytes: Range<usize>) -> Line {
+        let text = self.texts.len() as u32;
+        Line { place, text, bytes }
+    }
+
+    /// Other cards in the place of these, with their lines, and the text of those that are new.
+    pub fn rewritten(mut self, lines: Vec<Line>, text: String, cards: Vec<Card>) -> Cards {
+        self.texts.push(text);
+        (self.lines, self.cards) = (lines, cards);
+        self
     }
 
     /// Collects the lines that count, those of included files where these are included.
@@ -138,6 +179,7 @@ impl Cards {
             }
             self.lines.push(Line {
                 place,
+                text: place.file,
                 bytes: from..from + trimmed.len(),
             });
         }
@@ -195,11 +237,11 @@ impl Cards {
 
     fn line(&self, l: usize) -> &str {
         let line = &self.lines[l];
-        &self.texts[line.place.file as usize][line.bytes.clone()]
+        &self.texts[line.text as usize][line.bytes.clone()]
     }
 
     /// Data line `l`, without the empty fields at its end.
-    fn row(&self, l: usize) -> Row<'_> {
+    pub fn row(&self, l: usize) -> Row<'_> {
         let mut fields: Vec<&str> = self.line(l).split(',').map(str::trim).collect();
         while fields.last().is_some_and(|f| f.is_empty()) {
             fields.pop();

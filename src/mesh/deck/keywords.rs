@@ -41,9 +41,6 @@ const COUPLED: Verdict =
     Refused("rigid and averaged couplings of nodes are not supported; write them as *EQUATION");
 const NONLINEAR: Verdict = InMaterial("only isotropic linear elasticity is supported");
 const CHANGES: Verdict = Refused("the model may not change between steps");
-const PARTS: Verdict = RefusedMesh(
-    "decks of parts and instances are not supported; write the deck flat, without parts",
-);
 const GENERATED: Verdict =
     RefusedMesh("nodes and elements must be written out; generating them is not supported");
 
@@ -51,7 +48,7 @@ const GENERATED: Verdict =
 pub const KEYWORDS: &[(&str, Verdict)] = &[
     ("ACOUSTIC FLOW VELOCITY", WAVES),
     ("AMPLITUDE", Read),
-    ("ASSEMBLY", PARTS),
+    ("ASSEMBLY", Read),
     ("BASE MOTION", WAVES),
     ("BEAM GENERAL SECTION", SLENDER),
     ("BEAM SECTION", SLENDER),
@@ -144,9 +141,9 @@ pub const KEYWORDS: &[(&str, Verdict)] = &[
     ("ELGEN", GENERATED),
     ("ELSET", Read),
     ("EMBEDDED ELEMENT", COUPLED),
-    ("END ASSEMBLY", PARTS),
-    ("END INSTANCE", PARTS),
-    ("END PART", PARTS),
+    ("END ASSEMBLY", Read),
+    ("END INSTANCE", Read),
+    ("END PART", Read),
     ("END STEP", Read),
     ("ENERGY OUTPUT", OUTPUT),
     ("EQUATION", Read),
@@ -196,7 +193,7 @@ pub const KEYWORDS: &[(&str, Verdict)] = &[
         "INITIAL STRAIN INCREASE",
         Refused("initial strains are not supported"),
     ),
-    ("INSTANCE", PARTS),
+    ("INSTANCE", Read),
     ("KINEMATIC", COUPLED),
     ("KINEMATIC COUPLING", COUPLED),
     (
@@ -250,7 +247,7 @@ pub const KEYWORDS: &[(&str, Verdict)] = &[
         "PARAMETER",
         RefusedMesh("parameters are not supported; write the numbers out"),
     ),
-    ("PART", PARTS),
+    ("PART", Read),
     (
         "PHYSICAL CONSTANTS",
         Ignored("it is for radiation, gravitation between bodies and fluids"),
@@ -308,7 +305,7 @@ pub const KEYWORDS: &[(&str, Verdict)] = &[
     ("SURFACE BEHAVIOR", Read),
     ("SURFACE INTERACTION", Read),
     ("SURFACE SECTION", SLENDER),
-    ("SYSTEM", GENERATED),
+    ("SYSTEM", Read),
     (
         "TEMPERATURE",
         Refused("strains of temperature are not supported"),

@@ -2,8 +2,9 @@
 //!
 //! [`read`] takes a whole deck, [`read_mesh`] its mesh only. What would change the answer and is not supported is
 //! refused in one sentence with its line; what does not change it stands in [`Deck::ignored`]. [`KEYWORDS`] is the
-//! verdict on every keyword.
+//! verdict on every keyword. Decks of parts and instances are made flat before they are read (`assembly`).
 
+mod assembly;
 mod cards;
 mod dat;
 mod element;
@@ -34,7 +35,10 @@ use reader::Reader;
 /// Reads the deck `text`; `name` is its name in messages, and `include` reads the files that it includes, whose names
 /// it gets as they are written.
 pub fn read(name: &str, text: &[u8], include: &dyn Fn(&str) -> Result<Vec<u8>>) -> Result<Deck> {
-    Reader::new(&Cards::new(name, text, include)?, true).deck()
+    let (cards, notes) = assembly::flatten(Cards::new(name, text, include)?)?;
+    let mut deck = Reader::new(&cards, true).deck()?;
+    deck.placed = notes;
+    Ok(deck)
 }
 
 /// Reads the mesh of the deck `text` and nothing else: nodes, elements of every shape, sets and surfaces.
@@ -43,7 +47,8 @@ pub fn read_mesh(
     text: &[u8],
     include: &dyn Fn(&str) -> Result<Vec<u8>>,
 ) -> Result<MeshFile> {
-    Reader::new(&Cards::new(name, text, include)?, false).mesh()
+    let (cards, _) = assembly::flatten(Cards::new(name, text, include)?)?;
+    Reader::new(&cards, false).mesh()
 }
 
 #[cfg(test)]

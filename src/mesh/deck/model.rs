@@ -43,6 +43,8 @@ pub struct Deck {
     pub ignored: Vec<Note>,
     /// What is solved as something else than CalculiX solves it.
     pub replaced: Vec<Note>,
+    /// What became of its parts and instances.
+    pub placed: Vec<Note>,
 }
 
 /// A *SOLID SECTION.

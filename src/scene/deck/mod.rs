@@ -111,9 +111,13 @@ impl DeckScenes {
         };
         let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
+        let placed = deck.placed.iter().map(|note| {
+            let place = deck.files.at(note.place);
+            format!("{place}: {}: {}", note.keyword, note.reason)
+        });
         let unused = deck.mesh.unused(deck.dim(), &[]);
         let changes = self.changes.iter().cloned();
-        let all = ignored.chain(replaced).chain(unused);
+        let all = ignored.chain(replaced).chain(placed).chain(unused);
         let exchanged = carriers::notes(deck, &self.exchanged);
         all.chain(changes).chain(exchanged).collect()
     }

@@ -9,6 +9,7 @@ mod mesh_files;
 mod motions;
 mod own_contact;
 mod own_meshes;
+mod parts;
 mod pins;
 mod pressures;
 mod slack;

@@ -62,10 +62,12 @@ impl<'a> Params<'a> {
     pub fn name(&mut self, name: &str) -> Result<Option<&'a str>> {
         match self.value(name) {
             Some("") => self.error(format!("{name}= needs a name")),
-            Some(value) if value.chars().count() > LONGEST_NAME => self.error(format!(
-                "the name '{}' is longer than {LONGEST_NAME} letters",
-                clip(value)
-            )),
+            // Of a set of an instance both names are as long.
+            Some(value) if value.split('.').any(|v| v.chars().count() > LONGEST_NAME) => self
+                .error(format!(
+                    "the name '{}' is longer than {LONGEST_NAME} letters",
+                    clip(value)
+                )),
             value => Ok(value),
         }
     }

@@ -73,7 +73,8 @@ impl<'a> Reader<'a> {
         if of_nodes {
             let set = self.node_surfaces.open(name, card.place);
             for row in self.cards.rows(card) {
-                row.at_most(self.files, 1, "a surface of nodes")?;
+                // Abaqus writes an area behind each set of nodes, which contact with normals does not need.
+                row.at_most(self.files, 2, "a surface of nodes")?;
                 let found = self.target_nodes(&row, 0)?;
                 self.spend(found.len(), row.place)?;
                 self.node_surfaces.sets[set].members.extend(found);
