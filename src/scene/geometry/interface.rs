@@ -53,10 +53,10 @@ pub struct SharedNode {
     pub link: Link,
 }
 
-/// Two bodies that touch, or have sides that face each other.
+/// Two bodies that touch, or have sides that face each other; or two sides of one body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interface {
-    /// The bodies, the lower number first.
+    /// The bodies, the lower number first; the same twice if the body touches itself.
     pub bodies: [usize; 2],
     /// The shape of the common part.
     pub shape: Shape,

@@ -14,7 +14,7 @@ use crate::mesh::{
 use crate::scene::model::body::{BodySpec, Cut};
 use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::quantity::unfit_size;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene.

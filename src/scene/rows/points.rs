@@ -19,7 +19,7 @@ pub struct Point {
     pub block: u64,
     /// The subdomain of lowest index that contains the point; the rank that owns it provides the rows.
     pub subdomain: usize,
-    /// The nodes, by increasing body.
+    /// The nodes, by increasing body and node.
     pub members: Vec<BodyNode>,
     /// Lowest member (index into `members`) to which each member is tied; the member itself if there is no lower one.
     pub tied_to: Vec<usize>,

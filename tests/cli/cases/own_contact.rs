@@ -222,7 +222,8 @@ fn a_bent_box_touches_itself() {
     let scratch = Scratch::new("cases_own_box");
     let scene = "physics = \"elasticity\"\n[[body]]\nname = \"c\"\nelements = [3, 40]\nsubdomains = [1, 4]\n\
         young = 100\nshape = { annulus = { inner = 1, outer = 1.3, from = 4, to = 356 } }\n\
-        pressure = { right = 0.05 }\nspring = { left = 0.01 }\n[[contact]]\nbodies = [\"c\", \"c\"]\nsides = [\"bottom\", \"top\"]\n";
+        pressure = { right = 0.05 }\nspring = { left = 0.01 }\n[[contact]]\n\
+        bodies = [\"c\", \"c\"]\nsides = [\"bottom\", \"top\"]\n";
     let run = report(&scratch, 2, scene, &[]);
     let interface = &run["contact"]["interfaces"][0];
     assert_eq!(interface["name"], "c.bottom|c.top");

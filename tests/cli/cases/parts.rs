@@ -81,6 +81,42 @@ fn a_part_may_be_all_there_is() {
     }
 }
 
+/// The clamp that touches itself as a part: moved and turned by 90 degrees it has the same displacements, turned.
+#[test]
+fn a_turned_instance_moves_as_its_part_does() {
+    let scratch = Scratch::new("cases_turned");
+    let flat = fs::read_to_string("tests/data/cases/07_contact_of_one_body.inp").expect("a deck");
+    let at = |what: &str| flat.find(what).expect(what);
+    let [material, section, contact] =
+        ["*MATERIAL", "*SOLID SECTION", "*SURFACE INTERACTION"].map(at);
+    let rest = &flat[contact..]
+        .replace("SLOW, SUP", "C-1.SLOW, C-1.SUP")
+        .replace("HELD, 1, 3", "C-1.HELD, 1, 3")
+        .replace("TLOW, 2, 0.4", "LOWS, 1, -0.4")
+        .replace("TUP, 2, -0.4", "A.C-1.TUP, 1, 0.4")
+        .replace("NSET=TLOW", "NSET=LOWS")
+        .replace("NSET=TUP", "NSET=C-1.TUP");
+    let deck = format!(
+        "*PART, NAME=C\n{}{}*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=C-1, PART=C\n3., 0., 1.\n\
+         3., 0., 0., 3., 0., 1., 90.\n*END INSTANCE\n*NSET, NSET=LOWS, INSTANCE=C-1\n63, 126\n*END ASSEMBLY\n{}{rest}",
+        &flat[..material],
+        &flat[section..contact],
+        &flat[material..section]
+    );
+    let report = solved(1, &scratch.file("d.inp", &deck));
+    near(
+        &report["contact"]["interfaces"][0]["force"],
+        0.786_747_314_51,
+    );
+    let tables = report["node_print"].as_array().expect("tables");
+    for (table, sign) in tables.iter().zip([-1.0, 1.0]) {
+        for node in table["nodes"].as_array().expect("nodes") {
+            near(&node[1], sign * 0.054_671_735_85);
+            near(&node[2], 0.004_779_749_578);
+        }
+    }
+}
+
 /// What of a deck of parts is missing or not where it must be is told with its line.
 #[test]
 fn mistakes_in_parts_are_told() {

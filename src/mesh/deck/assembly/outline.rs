@@ -136,13 +136,7 @@ impl<'a> Outline<'a> {
                     return fail(format!("*END {}: {}", &card.keyword[3..], state(&open)))
                 }
                 "STEP" if inside.is_some() => return fail(format!("*STEP: {}", state(&open))),
-                _ => match inside {
-                    Some(Open::Part) => outline.parts.last_mut().map(|p| &mut p.cards),
-                    Some(Open::Instance) => outline.instances.last_mut().map(|i| &mut i.cards),
-                    Some(Open::Assembly) | None => Some(&mut outline.others),
-                }
-                .into_iter()
-                .for_each(|list| list.push(card)),
+                _ => outline.add(inside, card),
             }
         }
         if let Some((_, by)) = open.last() {
@@ -160,6 +154,18 @@ impl<'a> Outline<'a> {
             outline.stand_alone();
         }
         Ok(outline)
+    }
+
+    /// Adds a card where it stands.
+    fn add(&mut self, inside: Option<Open>, card: &'a Card) {
+        let of_part = self.parts.last_mut().map(|p| &mut p.cards);
+        let of_instance = self.instances.last_mut().map(|i| &mut i.cards);
+        let list = match inside {
+            Some(Open::Part) => of_part,
+            Some(Open::Instance) => of_instance,
+            Some(Open::Assembly) | None => None,
+        };
+        list.unwrap_or(&mut self.others).push(card);
     }
 
     /// Without an assembly, as other programs write meshes, each part is there once, at its place.
@@ -227,9 +233,7 @@ fn placement(cards: &Cards, card: &Card) -> Result<Placement> {
             .collect();
         let numbers = numbers.ok_or_else(|| fail("*INSTANCE: its lines have numbers alone"))?;
         match (k, &numbers[..]) {
-            (0, [.., ]) if numbers.len() <= 3 => {
-                (0..numbers.len()).for_each(|d| way[d] = numbers[d]);
-            }
+            (0, list) if list.len() <= 3 => way[..list.len()].copy_from_slice(list),
             (0 | 1, &[a, b, c, d, e, f, angle]) if rotation.is_none() => {
                 rotation = Some(([a, b, c], [d, e, f], angle));
             }

@@ -102,9 +102,7 @@ impl<'a> Names<'a> {
     /// The instance that a name begins with, and what stands behind its dot.
     fn split<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str)> {
         let dots = name.match_indices('.').map(|(at, _)| at);
-        let parts = dots.map(|at| (&name[..at], &name[at + 1..]));
-        parts
-            .into_iter()
-            .find(|(instance, rest)| self.is_instance(instance) && !rest.is_empty())
+        let mut parts = dots.map(|at| (&name[..at], &name[at + 1..]));
+        parts.find(|(instance, rest)| self.is_instance(instance) && !rest.is_empty())
     }
 }

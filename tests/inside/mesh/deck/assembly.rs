@@ -36,7 +36,7 @@ E, S1
 *END PART
 ";
 
-const REST: &str = "*MATERIAL, NAME=M\n*ELASTIC\n1, 0.3\n";
+const REST: &str = "*MATERIAL, NAME=M\n*ELASTIC\n1, 0.3\n*STEP\n*STATIC\n*END STEP\n";
 
 /// Two of them: one at its place, the other moved by (2, 0) and turned by 90 degrees about (2, 0).
 const ASSEMBLY: &str = "*ASSEMBLY, NAME=A
