@@ -96,7 +96,7 @@ impl Pieces {
             let all = list.iter().flat_map(|&c| mesh.cells.nodes(c as usize));
             let fresh = |k: &u32| std::mem::replace(&mut seen[*k as usize], p) != p;
             let own: Vec<u32> = all.copied().filter(fresh).collect();
-            nodes.push(own.into_iter());
+            nodes.push(own);
         }
         let at = nodes.iter().enumerate();
         let at = at.flat_map(|(p, list)| list.iter().map(move |&k| (k as usize, p as u32)));
@@ -181,7 +181,7 @@ impl<'a> Search<'a> {
         let rows = dofs
             .map(|dof| rigid.iter().map(|x| x[dof]).collect())
             .collect();
-        null_space(rows, &[0..rigid.len()], NONE).is_empty()
+        null_space(rows, std::slice::from_ref(&(0..rigid.len())), NONE).is_empty()
             && element::sees(self.form, kind, points, rule, &new)
     }
 
@@ -301,7 +301,7 @@ impl<'a> Search<'a> {
         let n = motions.len();
         let mut closed = Vec::new();
         let mut is_closed = vec![false; n];
-        for (free, x) in null_space_in(rows, &[0..n], n) {
+        for (free, x) in null_space_in(rows, std::slice::from_ref(&(0..n)), n) {
             is_closed[free] = true;
             let mut motion = Motion::new();
             for (known, factor) in motions.iter().zip(&x).filter(|(_, f)| **f != 0.0) {

@@ -48,7 +48,7 @@ fn slack_of<const D: usize, const N: usize>(
     let n = D * N;
     let l = factor::<D>(points, form.is_axial());
     let rows = strains::<D, N>(form, kind, points, Purpose::Reduced, &l);
-    let found = null_space(rows, &[0..n], NONE);
+    let found = null_space(rows, std::slice::from_ref(&(0..n)), NONE);
     // Back: u = L⁻ᵀ u'.
     let back = |(_, u): (usize, Vec<f64>)| -> Vec<f64> {
         let mut out = vec![0.0; n];
@@ -129,7 +129,7 @@ fn sees_all<const D: usize, const N: usize>(
         dofs.map(|dof| row[dof]).collect()
     };
     let rows = rows.into_iter().map(of_moving).collect();
-    null_space(rows, &[0..D * moving.len()], NONE).is_empty()
+    null_space(rows, std::slice::from_ref(&(0..D * moving.len())), NONE).is_empty()
 }
 
 /// The points at which a cell sees strains.

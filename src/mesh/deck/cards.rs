@@ -69,6 +69,17 @@ pub(super) struct Cards {
     texts: Vec<String>,
     lines: Vec<Line>,
     pub cards: Vec<Card>,
+    /// One unit in the last digit of coordinates that were written otherwise than they stand here; 0 if there are none.
+    pub resolution: f64,
+}
+
+/// What takes the place of the cards of a deck.
+pub(super) struct Flattened {
+    pub lines: Vec<Line>,
+    /// The text in which the lines are.
+    pub text: String,
+    pub cards: Vec<Card>,
+    pub resolution: f64,
 }
 
 /// A data line, cut at its commas.
@@ -90,6 +101,7 @@ impl Cards {
             texts: vec![decode(name, text)?],
             lines: Vec::new(),
             cards: Vec::new(),
+            resolution: 0.0,
         };
         cards.read_lines(include)?;
         cards.group()?;
@@ -118,9 +130,10 @@ impl Cards {
     }
 
     /// Other cards in the place of these, with their lines, and the text of those that are new.
-    pub fn rewritten(mut self, lines: Vec<Line>, text: String, cards: Vec<Card>) -> Cards {
-        self.texts.push(text);
-        (self.lines, self.cards) = (lines, cards);
+    pub fn rewritten(mut self, flat: Flattened) -> Cards {
+        self.texts.push(flat.text);
+        (self.lines, self.cards) = (flat.lines, flat.cards);
+        self.resolution = flat.resolution;
         self
     }
 

@@ -6,7 +6,7 @@ use super::*;
 #[test]
 fn a_basis_has_a_vector_for_each_free_column() {
     let rows = vec![vec![1.0, 1.0, 2.0, 0.0], vec![0.5, 0.5, 1.0, 0.0]];
-    let found = null_space(rows.clone(), &[0..4], 1e-12);
+    let found = null_space(rows.clone(), std::slice::from_ref(&(0..4)), 1e-12);
     assert_eq!(found.len(), 3);
     for (free, x) in &found {
         assert_eq!(x[*free], 1.0);

@@ -8,9 +8,10 @@ use super::pieces::{coordinates, is_system, largest, of_instance, turned, Elemen
 use super::placement::Placement;
 use super::targets::{Names, Of, Offsets, Scope};
 use crate::error::Result;
-use crate::mesh::deck::cards::{Card, Cards, Line, Param, Row};
+use crate::mesh::deck::cards::{Card, Cards, Flattened, Line, Param, Row};
 use crate::mesh::deck::numbers::{clip, real};
 use crate::mesh::deck::place::{Note, Place};
+use crate::mesh::Digits;
 
 /// Keywords that every instance of a part has of its own. Others are told once, where they stand in the part.
 const OF_INSTANCES: [&str; 12] = [
@@ -44,6 +45,8 @@ pub(super) struct Flat<'a> {
     pub(super) lines: Vec<Line>,
     pub(super) out: Vec<Card>,
     notes: Vec<Note>,
+    /// The digits of coordinates that are moved.
+    digits: Digits,
 }
 
 impl<'a> Flat<'a> {
@@ -80,6 +83,7 @@ impl<'a> Flat<'a> {
             lines: Vec::new(),
             out: Vec::new(),
             notes: Vec::new(),
+            digits: Digits::default(),
         })
     }
 
@@ -123,8 +127,14 @@ impl<'a> Flat<'a> {
     }
 
     /// What was written: lines, the text of new ones, cards, and notes.
-    pub fn end(self) -> (Vec<Line>, String, Vec<Card>, Vec<Note>) {
-        (self.lines, self.text, self.out, self.notes)
+    pub fn end(self) -> (Flattened, Vec<Note>) {
+        let flat = Flattened {
+            lines: self.lines,
+            text: self.text,
+            cards: self.out,
+            resolution: self.digits.resolution(),
+        };
+        (flat, self.notes)
     }
 
     /// Where the data of a card of the assembly stand: sets may be of an instance.
@@ -184,6 +194,7 @@ impl<'a> Flat<'a> {
         let moves = !placement.is_none() || !system.is_none();
         let [nodes, cells] = data.offsets.0;
         let mut elements = Elements::of(card);
+        let mut digits = self.digits;
         let range = self.rows(card, &mut |row| match card.keyword.as_str() {
             "NODE" if nodes == 0 && !moves => None,
             "NODE" => {
@@ -191,7 +202,11 @@ impl<'a> Flat<'a> {
                 let at = at.map(|x| placement.point(system.point(x)));
                 let mut fields = vec![data.number(row.field(0), Of::Nodes)];
                 match at {
-                    Some(x) => fields.extend(x.map(|v| format!("{v:?}"))),
+                    // What is computed has all digits, and is known to as many as were written.
+                    Some(x) => {
+                        (1..=3).for_each(|k| digits.see(row.field(k).as_bytes()));
+                        fields.extend(x.map(|v| format!("{v:?}")));
+                    }
                     None => fields.extend(row.fields.iter().skip(1).map(|f| f.to_string())),
                 }
                 Some(fields)
@@ -241,6 +256,7 @@ impl<'a> Flat<'a> {
             })
         };
         let params = card.params.iter().filter_map(name).collect();
+        self.digits = digits;
         self.names = names;
         self.out.push(card.with(params, range));
         Ok(())

@@ -45,8 +45,8 @@ pub(super) fn flatten(cards: Cards) -> Result<(Cards, Vec<Note>)> {
     let outline = Outline::new(&cards)?;
     let mut flat = Flat::new(&cards, &outline)?;
     flat.write()?;
-    let (lines, text, written, notes) = flat.end();
-    Ok((cards.rewritten(lines, text, written), notes))
+    let (flat, notes) = flat.end();
+    Ok((cards.rewritten(flat), notes))
 }
 
 #[cfg(test)]

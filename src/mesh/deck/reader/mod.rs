@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
     fn read_mesh(&mut self) -> Result<()> {
         self.deck.mesh.name = self.files.0[0].clone();
         self.each(&["NODE"], Self::node)?;
-        self.deck.mesh.resolution = self.digits.resolution();
+        self.deck.mesh.resolution = self.digits.resolution().max(self.cards.resolution);
         self.nodes.sort();
         self.each(&["ELEMENT"], Self::element)?;
         self.cells.sort();
