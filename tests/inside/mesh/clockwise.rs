@@ -37,10 +37,12 @@ fn points(kind: CellKind) -> Vec<[f64; 3]> {
 fn mirrored_cells_are_turned_and_sides_keep_their_nodes() {
     for kind in KINDS {
         let n = kind.nodes() as u32;
-        let mut file = MeshFile::default();
-        file.points = points(kind);
-        file.points
-            .extend(points(kind).iter().map(|p| [-p[0], p[1], 0.0]));
+        let right = points(kind).into_iter();
+        let left = points(kind).into_iter().map(|p| [-p[0], p[1], 0.0]);
+        let mut file = MeshFile {
+            points: right.chain(left).collect(),
+            ..MeshFile::default()
+        };
         let own: Vec<u32> = (0..n).collect();
         let mirrored: Vec<u32> = (n..2 * n).collect();
         file.cells.push(kind, &own);
