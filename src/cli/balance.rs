@@ -8,7 +8,7 @@
 use super::row_forces::RowForces;
 use crate::linalg::sorted::distinct;
 use crate::linalg::vec3::{minus, norm};
-use crate::parallel::exchange::{any, exchange_words, total};
+use crate::parallel::exchange::{any, exchange_words, highest, total};
 use crate::petsc::Session;
 use crate::report::json::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Forces, Scene, Wrench};
@@ -78,13 +78,14 @@ pub(super) struct Balanced {
     beyond: f64,
 }
 
-/// Loads, springs, forces of contact and reactions of every body on rank 0; none on the others. Collective.
+/// Loads, springs, forces of contact and reactions of every body on rank 0; none on the others. `strained` is the
+/// largest ‖u‖_K of the load steps so far, this one included afterwards. Collective.
 pub(super) fn bodies(
     session: &Session,
     scene: &Scene,
     solver: &FetiFeti,
     solution: &Solution,
-    step: usize,
+    (step, strained): (usize, &mut f64),
 ) -> Result<Vec<Balanced>> {
     let mut sums = vec![Sums::default(); scene.n_bodies()];
     let locals = solver.problem().local.iter().zip(&solution.u);
@@ -131,7 +132,7 @@ pub(super) fn bodies(
             sums[words[0] as usize].add(&words[1..]);
         }
     }
-    let error = error(session, solver, solution)?;
+    let error = error(session, solver, solution, strained)?;
     if session.rank() > 0 {
         return Ok(Vec::new());
     }
@@ -187,6 +188,9 @@ struct Error {
     relative: f64,
     /// The estimate of ‖u − u*‖_K, times [`SAFETY`].
     energy: f64,
+    /// The angle to which directions of rows are known from the digits of the input: multipliers may leave so much of
+    /// their moments on a body whose turn nothing else resists.
+    input: f64,
 }
 
 /// The estimate of the error is one, and u and λ have errors.
@@ -195,8 +199,17 @@ const SAFETY: f64 = 10.0;
 /// An imbalance that does not count as one, relative to the forces, whatever the tolerance is.
 const LEAST: f64 = 1e-6;
 
+/// Where loads return to zero, what is below this part of earlier strains is rounding of these
+/// (the certificate has the same).
+const SMALL: f64 = 1e-8;
+
 /// The error of a solution. Collective.
-fn error(session: &Session, solver: &FetiFeti, solution: &Solution) -> Result<Error> {
+fn error(
+    session: &Session,
+    solver: &FetiFeti,
+    solution: &Solution,
+    strained: &mut f64,
+) -> Result<Error> {
     let mut squares = 0.0;
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
         let mut force = vec![0.0; u.len()];
@@ -204,11 +217,15 @@ fn error(session: &Session, solver: &FetiFeti, solution: &Solution) -> Result<Er
         squares += force.iter().zip(u).map(|(f, u)| f * u).sum::<f64>();
     }
     let size = total(session.comm(), squares).max(0.0).sqrt();
+    *strained = strained.max(size);
     let rtol = solver.ksp().tolerances()?.0;
     let known = solution.kkt.error.unwrap_or(rtol);
+    let rows = solver.problem().rows.iter();
+    let rounding = rows.map(|row| row.rounding).fold(0.0, f64::max);
     Ok(Error {
         relative: rtol.clamp(LEAST, 0.1),
-        energy: SAFETY * known.max(rtol) * size,
+        input: highest(session.comm(), rounding),
+        energy: (SAFETY * known.max(rtol) * size).max(SMALL * *strained),
     })
 }
 
@@ -240,12 +257,12 @@ fn balance(
     let lever = largest(|w| w.lever).max(1e-3 * size * radius);
     let turns = (scene.form.is_elastic() && !axial).then(|| norm(sum(|w| w.moment)));
     let relative = |rest: f64, scale: f64| if scale > 0.0 { rest / scale } else { 0.0 };
-    let beyond = |rest: f64, scale: f64, rounding: f64, resistance: &[f64]| {
+    let beyond = |rest: f64, (scale, largest): (f64, f64), rounding: f64, resistance: &[f64]| {
         let along: f64 = resistance.iter().sum();
         let iterated = error.energy * along.max(0.0).sqrt();
         relative(
             rest,
-            error.relative * scale + ROUNDING * rounding + iterated,
+            error.relative * scale + error.input * largest + ROUNDING * rounding + iterated,
         )
     };
     let (straight, turned) = sums.resistance.split_at(c);
@@ -257,8 +274,10 @@ fn balance(
         2 => w.moment[2].into(),
         _ => Amount(w.moment.to_vec()),
     };
-    let of_forces = beyond(norm(rest), size, sums.terms, straight);
-    let of_moments = turns.map_or(0.0, |rest| beyond(rest, lever, sums.terms * radius, turned));
+    let of_forces = beyond(norm(rest), (size, size), sums.terms, straight);
+    let of_moments = turns.map_or(0.0, |rest| {
+        beyond(rest, (lever, size * radius), sums.terms * radius, turned)
+    });
     let beyond = match (of_forces + of_moments).is_nan() {
         true => f64::INFINITY,
         false => of_forces.max(of_moments),

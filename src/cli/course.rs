@@ -85,7 +85,7 @@ pub(super) fn follow(
     if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
         session.agree(list_before(session, dir, &times[..first], place, pvd))?;
     }
-    let mut seconds = [0.0; 2];
+    let (mut seconds, mut strained) = ([0.0; 2], 0.0);
     // With a single load step the substructures have its loads already.
     let many = (n > 1).then(|| {
         let mine = solver.problem().local.iter().map(|s| s.index);
@@ -138,7 +138,7 @@ pub(super) fn follow(
         let mine = solver.problem().local.iter().map(|s| s.index);
         let given = session.agree(scene.given_energy(mine, step))?;
         let given = total(session.comm(), given);
-        let balances = balance::bodies(session, scene, solver, &solution, step)?;
+        let balances = balance::bodies(session, scene, solver, &solution, (step, &mut strained))?;
         let (fails, unbalanced) = balance::out_of_balance(session, &balances);
         if fails && solution.converged() {
             solution.status = Status::Balance;

@@ -1,4 +1,5 @@
-//! What of an answer is arbitrary, and what makes it doubtful: motions that nothing holds, displacements beyond the model.
+//! What of an answer is arbitrary, and what makes it doubtful: motions that nothing holds, displacements beyond the
+//! model.
 
 use super::course::Course;
 use crate::feti::FreeMotion;
@@ -93,8 +94,8 @@ pub(super) fn beyond(session: &Session, scene: &Scene, course: &Course) -> Vec<S
         ));
     } else if slid.over_face > FACES || slid.turned > DEGREES {
         out.push(format!(
-            "sides that touch slide by {:.3e} of a face and faces turn by {:.3e} degrees, far beyond what holds for small \
-             displacements: look for a body that hardly anything holds, and at the units of loads and moduli",
+            "sides that touch slide by {:.3e} of a face and faces turn by {:.3e} degrees, far beyond what holds for \
+             small displacements: look for a body that hardly anything holds, and at the units of loads and moduli",
             slid.over_face, slid.turned
         ));
     }

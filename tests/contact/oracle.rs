@@ -87,7 +87,8 @@ fn by_the_program_on_one_two_and_four_ranks() {
                 }
                 assert!(number(&kkt["min_multiplier"]) > -1e-12, "{what}: {kkt}");
                 for body in contact["bodies"].as_array().expect("a list") {
-                    assert!(number(&body["imbalance"]) < 1e-12, "{what}: {body}");
+                    // Reactions are those of K u.
+                    assert!(number(&body["imbalance"]) < 1e-10, "{what}: {body}");
                 }
                 assert_eq!(
                     contact["factorisations"], contact["distinct_subdomains"],

@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::known::Known;
 use super::motion::{Motion, NOTHING_SOLVED};
-use super::noise::weak_columns;
 use super::pattern::Pattern;
+use super::weak::weak_columns;
 use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -16,7 +16,8 @@ use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, gather_all};
 
 /// The motions of single bodies that nothing holds, or nothing but rounding of the input, each with the name of the
-/// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale. The rank that has the first column of a body looks at it. Collective.
+/// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale.
+/// The rank that has the first column of a body looks at it. Collective.
 pub(super) fn alone(
     (pattern, known): (&Pattern, &Known),
     team: &Team,

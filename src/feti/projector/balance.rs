@@ -55,8 +55,8 @@ pub struct Along {
 }
 
 impl Along {
-    /// The work on a motion, if it is no rounding: more than this part of the terms that may cancel in it, and than what
-    /// the digits of the input leave open.
+    /// The work on a motion, if it is no rounding: more than this part of the terms that may cancel in it, and than
+    /// what the digits of the input leave open.
     pub fn driving(&self, motion: &Motion, part: f64) -> Option<f64> {
         let [work, size, rounding] = self.work(motion);
         (work.abs() > (part * size).max(rounding)).then_some(work)

@@ -119,7 +119,7 @@ fn reduced(mut rows: Vec<[f64; 6]>) -> Vec<[f64; 6]> {
 fn turn(t: &Twist, s: &str) -> String {
     let angle = norm(t.rotation);
     let axis = t.rotation.map(|w| w / angle);
-    let along = dot(t.translation, axis);
+    let along = dot(t.translation, axis) / angle;
     // The point of the axis nearest to the centre: c + ω × v / ω².
     let arm = cross(t.rotation, t.translation);
     let mut point: [f64; 3] = std::array::from_fn(|d| t.centre[d] + arm[d] / (angle * angle));
@@ -135,7 +135,7 @@ fn turn(t: &Twist, s: &str) -> String {
         2 => place,
         _ => format!("{} through {place}", direction(axis)),
     };
-    let screw = along.abs() > SMALL * angle * t.radius.max(f64::MIN_POSITIVE);
+    let screw = along.abs() > SMALL * t.radius.max(f64::MIN_POSITIVE);
     match screw {
         true => format!(
             "turn{s} about {about} and slide{s} along this axis by {along:.4} for each radian"

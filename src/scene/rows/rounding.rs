@@ -8,8 +8,8 @@ use crate::mesh::Mesh;
 use crate::scene::checked::Scene;
 use crate::scene::geometry::facing::shortest;
 
-/// Units in the last place by which both ends of an edge may be off together, twice over: the normal of a node is a mean
-/// of those of the faces around it.
+/// Units in the last place by which both ends of an edge may be off together, twice over: the normal of a node is a
+/// mean of those of the faces around it.
 const UNITS: f64 = 2.0;
 
 /// The angle by which directions on each body may be off, in radians.

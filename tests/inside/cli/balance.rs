@@ -26,6 +26,7 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
     let scene = scene();
     let body = &scene.bodies[0];
     let error = Error {
+        input: 0.0,
         relative: 1e-6,
         energy: 0.0,
     };

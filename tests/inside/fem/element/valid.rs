@@ -183,7 +183,7 @@ fn fewer_points_refuse_less() {
     let at = |kind: CellKind, part: f64| {
         let mut points = reference_nodes(kind);
         for x in &mut points[2][..kind.dim()] {
-            *x -= part;
+            *x -= part * x.signum();
         }
         points
     };

@@ -1,0 +1,35 @@
+//! What rounding of the input may be in the work of rows on the motions of a body (`noise`).
+
+use mpi::topology::SimpleCommunicator;
+
+use super::rows::Rows;
+use super::shape::Shape;
+use crate::feti::jump::operator::Jump;
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::any;
+use crate::substructures::Substructures;
+
+/// Σ ε² |b|² over the candidate rows of a column's body, for each column that is known here; empty where all directions
+/// are exact. Collective.
+pub(super) fn rounding_of_rows(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    jump: &Jump,
+    (all, shape): (&Rows, &Shape),
+) -> Vec<f64> {
+    if !any(comm, problem.rows.iter().any(|row| row.rounding > 0.0)) {
+        return Vec::new();
+    }
+    let mut out = vec![0.0; shape.known.n()];
+    for i in jump.rows_between_bodies().filter(|&i| jump.is_candidate(i)) {
+        let row = &problem.rows[jump.given(i)];
+        let largest = row.terms.iter().fold(0.0f64, |a, t| a.max(t.1.abs()));
+        let columns = all.entries(i).0.iter();
+        for body in distinct(columns.map(|&c| shape.pattern.bodies()[c as usize])) {
+            let of_body = out[shape.pattern.columns(body as usize)].iter_mut();
+            of_body.for_each(|n| *n += (row.rounding * largest).powi(2));
+        }
+    }
+    shape.known.sum(comm, &mut out);
+    out
+}
