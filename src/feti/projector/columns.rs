@@ -39,6 +39,7 @@ impl KernelColumns {
     }
 
     /// Columns of bodies whose kernels have these dimensions; no rank owns any.
+    #[cfg(feature = "cli")]
     pub fn of_defects(defects: impl Iterator<Item = usize>) -> KernelColumns {
         let mut start = vec![0];
         defects.for_each(|d| start.push(start[start.len() - 1] + d));
