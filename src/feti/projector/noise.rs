@@ -37,18 +37,8 @@ impl NaturalCoarse {
         if self.noise.is_empty() {
             return g;
         }
-        let motions: Vec<Motion> = gram.unheld.iter().map(|m| self.plain(m)).collect();
-        g.across(&ByColumn::new(self.known(), motions.iter()))
-    }
-
-    /// A motion without coefficients that are no more than rounding of the input: a turn, and not a turn with a slide
-    /// of 1e-12. Columns that are not known here keep theirs.
-    fn plain(&self, motion: &Motion) -> Motion {
-        let largest = motion.largest();
-        let counts = |&&(c, v): &&(u32, f64)| {
-            let here = self.known().here(c);
-            here.is_none_or(|c| v.abs() > self.noise[c as usize].sqrt() * largest)
-        };
-        Motion(motion.0.iter().filter(counts).copied().collect())
+        let motions = ByColumn::new(self.known(), gram.unheld.iter());
+        let largest: Vec<f64> = gram.unheld.iter().map(Motion::largest).collect();
+        g.across(&motions, &largest, |c| self.noise[c as usize].sqrt())
     }
 }

@@ -8,8 +8,9 @@ use rustc_hash::FxHashMap;
 use super::by_column::ByColumn;
 use super::known::Known;
 use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
+use crate::linalg::dense::{dot, Dense};
 use crate::linalg::semidefinite::Semidefinite;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{sum_all, Record};
 
 /// An entry of which no more than this part is left was along the motions as a whole.
@@ -299,33 +300,47 @@ impl Rows {
         }
     }
 
-    /// Each row without its part along these motions, in the columns that it has: row ← row − V (VᵀV)⁺ Vᵀ row.
+    /// Each row without its part along these motions, in the columns that it has: row ← row − V (VᵀV)⁺ Vᵀ row. A motion
+    /// counts in a row if a coefficient there is more than rounding of its `largest`; of these coefficients those count
+    /// that are more than rounding beside each other. `rounding` is by column.
     #[must_use]
-    pub fn across(mut self, motions: &ByColumn) -> Rows {
+    pub fn across(
+        mut self,
+        motions: &ByColumn,
+        largest: &[f64],
+        rounding: impl Fn(u32) -> f64,
+    ) -> Rows {
         for i in 0..self.n() {
             let (at, group) = self.layout.row[i];
             let columns = self.layout.columns_of(group as usize);
             let row = &mut self.values[at..at + columns.len()];
-            let works = motions.works(columns, row);
-            if works.iter().all(|w| w.1 == 0.0) {
+            let rounding = columns.iter().fold(0.0f64, |a, &c| a.max(rounding(c)));
+            let meet = columns.iter().flat_map(|&c| motions.at(c));
+            let meet = distinct(meet.map(|e| e.0));
+            let mut v: Vec<Vec<f64>> = vec![vec![0.0; columns.len()]; meet.len()];
+            for (k, &c) in columns.iter().enumerate() {
+                for &(m, x) in motions.at(c) {
+                    let place = meet.partition_point(|&other| other < m);
+                    v[place][k] = x;
+                }
+            }
+            let mut counts = meet.iter().map(|&m| largest[m as usize]);
+            v.retain_mut(|v| {
+                let of_motion = counts.next().unwrap_or(0.0);
+                let here = v.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+                let rounded = v.iter_mut().filter(|x| x.abs() <= rounding * here);
+                rounded.for_each(|x| *x = 0.0);
+                here > rounding * of_motion
+            });
+            let mut along: Vec<f64> = v.iter().map(|v| dot(v, row)).collect();
+            if along.iter().all(|work| *work == 0.0) {
                 continue;
             }
-            let place = |m: u32| works.partition_point(|w| w.0 < m as usize);
-            let mut v = Dense::zeros(columns.len(), works.len());
-            for (k, &c) in columns.iter().enumerate() {
-                motions
-                    .at(c)
-                    .iter()
-                    .for_each(|&(m, x)| v.set(k, place(m), x));
-            }
-            let gram = Dense::from_fn(works.len(), works.len(), |p, q| {
-                v.col(p).iter().zip(v.col(q)).map(|(a, b)| a * b).sum()
-            });
-            let mut along: Vec<f64> = works.iter().map(|w| w.1).collect();
+            let gram = Dense::from_fn(v.len(), v.len(), |p, q| dot(&v[p], &v[q]));
             Semidefinite::new(&gram).solve(&mut along);
             let before = row.to_vec();
             for (p, z) in along.iter().enumerate() {
-                row.iter_mut().zip(v.col(p)).for_each(|(g, x)| *g -= z * x);
+                row.iter_mut().zip(&v[p]).for_each(|(g, x)| *g -= z * x);
             }
             // What is left of an entry that was nothing else is rounding, and scaling by the diagonal would magnify it.
             for (g, was) in row.iter_mut().zip(before) {
@@ -356,3 +371,7 @@ impl Layout {
         &self.columns[self.groups[group].columns..self.groups[group + 1].columns]
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/projector/rows.rs"]
+mod tests;
