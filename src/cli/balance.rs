@@ -142,7 +142,8 @@ pub(super) fn bodies(
     let of_body = |(b, (body, sums)): (usize, (&Body, &Sums))| {
         let floats = !columns.of(b).is_empty();
         let held = !body.prescribed.is_empty() || supported.binary_search(&b).is_ok();
-        balance(scene, body, sums, (floats, held), &error)
+        let free = error.free.binary_search(&b).is_ok();
+        balance(scene, body, sums, (floats, held, free), &error)
     };
     Ok(each.map(of_body).collect())
 }
@@ -191,7 +192,13 @@ struct Error {
     /// The angle to which directions of rows are known from the digits of the input: multipliers may leave so much of
     /// their moments on a body whose turn nothing else resists.
     input: f64,
+    /// Bodies that take part in motions which count as free, increasing.
+    free: Vec<usize>,
 }
+
+/// A motion of several bodies counts as free where rows resist it by less than this part of what they could, the root of
+/// the smallest pivot: multipliers may leave so much along it.
+const FREE: f64 = 1e-5;
 
 /// The estimate of the error is one, and u and λ have errors.
 const SAFETY: f64 = 10.0;
@@ -225,6 +232,7 @@ fn error(
     Ok(Error {
         relative: rtol.clamp(LEAST, 0.1),
         input: highest(session.comm(), rounding),
+        free: distinct(solver.free_motions().into_iter().flat_map(|m| m.bodies)),
         energy: (SAFETY * known.max(rtol) * size).max(SMALL * *strained),
     })
 }
@@ -237,9 +245,14 @@ fn balance(
     scene: &Scene,
     body: &Body,
     sums: &Sums,
-    (floats, held): (bool, bool),
+    (floats, held, free): (bool, bool, bool),
     error: &Error,
 ) -> Balanced {
+    let input = if free {
+        error.input.max(FREE)
+    } else {
+        error.input
+    };
     let c = body.components;
     let axial = scene.form.is_axial();
     let sum = |of: fn(&Wrench) -> [f64; 3]| {
@@ -262,7 +275,7 @@ fn balance(
         let iterated = error.energy * along.max(0.0).sqrt();
         relative(
             rest,
-            error.relative * scale + error.input * largest + ROUNDING * rounding + iterated,
+            error.relative * scale + input * largest + ROUNDING * rounding + iterated,
         )
     };
     let (straight, turned) = sums.resistance.split_at(c);

@@ -272,7 +272,11 @@ impl Scaled {
         // G alone decides which bodies are held: with Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
         // One dependent column of each unheld motion is held. This makes the matrix regular and does not change the
         // solution for right-hand sides in its range.
-        let held = |i: usize, j: u32| i == j as usize && gram.dropped.binary_search(&j).is_ok();
+        // So is a column of which nothing but rounding was left.
+        let nothing: Vec<bool> = a.diagonal().iter().map(|d| *d == 0.0).collect();
+        let held = |i: usize, j: u32| {
+            i == j as usize && (nothing[i] || gram.dropped.binary_search(&j).is_ok())
+        };
         let mut triplets: Vec<(i32, i32, f64)> = Vec::with_capacity(a.nnz());
         for i in 0..r {
             let (col, val) = a.row(i);

@@ -27,10 +27,11 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
     let body = &scene.bodies[0];
     let error = Error {
         input: 0.0,
+        free: Vec::new(),
         relative: 1e-6,
         energy: 0.0,
     };
-    let of = |sums: &Sums, error: &Error| balance(&scene, body, sums, (false, true), error);
+    let of = |sums: &Sums, error: &Error| balance(&scene, body, sums, (false, true, false), error);
     let good = of(&sums(0.5), &error);
     assert!(good.beyond < 1e-6, "{}", good.beyond);
     assert!(good.record.imbalance < 1e-15);
@@ -47,6 +48,7 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
     stiff.resistance[1] = 1e6;
     let loose = Error {
         energy: 1e-3,
+        free: Vec::new(),
         ..error
     };
     assert!(of(&stiff, &loose).beyond < 0.2);
