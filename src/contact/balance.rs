@@ -31,13 +31,39 @@ enum Factor {
 impl Balance {
     /// Forms and factors N; `natural` has the G of all candidates, of which `g` are multiples of rows. Collective.
     pub fn new(comm: &SimpleCommunicator, g: Rows, natural: &NaturalCoarse) -> Balance {
-        let factor = match natural.shape.as_ref().filter(|s| s.team().is_some()) {
-            Some(shape) => {
-                let n = shape.product(comm, &g, &g, |_| true);
+        Balance::raised(comm, g, natural, None)
+    }
+
+    /// The same with N = GᵀG + H for a diagonal H ≥ 0 of the columns that are known here. Collective.
+    pub fn raised(
+        comm: &SimpleCommunicator,
+        g: Rows,
+        natural: &NaturalCoarse,
+        h: Option<&[f64]>,
+    ) -> Balance {
+        let shape = natural.shape.as_ref();
+        let factor = match shape.and_then(|shape| Some((shape, shape.team()?))) {
+            Some((shape, team)) => {
+                let mut n = shape.product(comm, &g, &g, |_| true);
+                for (k, h) in h.into_iter().flatten().enumerate() {
+                    if team.has(k as u32) {
+                        n.set_diagonal(k, n.get(k, k) + h);
+                    }
+                }
                 let factor = Gram::new(shape, n.clone());
                 Factor::Sparse(Refined::symmetric(shape, factor, n).into())
             }
-            None => Factor::Dense(Semidefinite::new(&g.product(comm, &g, natural.r, |_| true))),
+            None => {
+                let mut n = g.product(comm, &g, natural.r, |_| true);
+                for (k, h) in h.into_iter().flatten().enumerate() {
+                    n.set(k, k, n.get(k, k) + h);
+                }
+                Factor::Dense(match h {
+                    // It is regular, however small H is beside GᵀG.
+                    Some(_) => Semidefinite::above(&n, f64::EPSILON),
+                    None => Semidefinite::new(&n),
+                })
+            }
         };
         let known = natural.known().clone();
         Balance { g, known, factor }

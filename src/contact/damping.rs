@@ -15,6 +15,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::anchors::Anchors;
 use crate::parallel::exchange::sum_all;
 
 /// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
@@ -29,8 +30,10 @@ const ENOUGH: f64 = 0.1;
 pub struct Point {
     /// B u − c.
     pub gap: Vec<f64>,
-    /// λ with K u = f − Bᵀλ.
+    /// λ with K u = f − Bᵀλ, less the forces of anchors.
     pub force: Vec<f64>,
+    /// α and y = e − Gᵀλ where there are anchors ([`Anchors`]); else empty.
+    pub motion: [Vec<f64>; 2],
 }
 
 impl Point {
@@ -42,6 +45,7 @@ impl Point {
         Point {
             gap: between(&self.gap, &end.gap),
             force: between(&self.force, &end.force),
+            motion: [0, 1].map(|i| between(&self.motion[i], &end.motion[i])),
         }
     }
 }
@@ -54,6 +58,8 @@ pub struct Penalty<'a> {
     pub multiplier: &'a [f64],
     /// C.
     pub compliance: &'a [f64],
+    /// The anchors of bodies, if there are any.
+    pub anchors: Option<&'a Anchors>,
 }
 
 impl Penalty<'_> {
@@ -76,7 +82,20 @@ impl Penalty<'_> {
             sums[1] += gap * (f64::from(u8::from(s > 0.0)) * gap / self.compliance[i] - force);
         }
         sum_all(comm, &mut sums);
-        sums
+        let [a, b] = self.slope_of_anchors(comm, from, to, t);
+        [sums[0] + a, sums[1] + b]
+    }
+
+    fn slope_of_anchors(
+        &self,
+        comm: &SimpleCommunicator,
+        from: &Point,
+        to: &Point,
+        t: f64,
+    ) -> [f64; 2] {
+        let ends = [&from.motion, &to.motion];
+        let slope = |anchors: &Anchors| anchors.slope(comm, ends, t);
+        self.anchors.map_or([0.0; 2], slope)
     }
 
     /// φ at t on the way from one point to another, minus φ at its beginning. Collective.
@@ -90,7 +109,9 @@ impl Penalty<'_> {
             sum[0] -= t * gap * (from.force[i] + 0.5 * t * force);
         }
         sum_all(comm, &mut sum);
-        sum[0]
+        // It is a parabola along the way.
+        let [slope, curvature] = self.slope_of_anchors(comm, from, to, 0.0);
+        sum[0] + t * (slope + 0.5 * t * curvature)
     }
 
     /// How far to go from one point to another; `None` if φ does not fall. With `beyond` this is the t in (0, ∞) that

@@ -10,11 +10,14 @@
 //! check before the loop finds out whether a solution exists (`feasible`).
 
 mod active_set;
+mod anchored;
+mod anchors;
 mod augmented;
 mod balance;
 mod damping;
 mod dependent;
 mod feasible;
+mod finished;
 mod give;
 mod judge;
 mod lagrangian;

@@ -9,6 +9,8 @@
 
 use std::time::Instant;
 
+use super::anchored::Arrival;
+use super::anchors::Anchors;
 use super::damping::{Penalty, Point};
 use super::dependent;
 use super::give::softness;
@@ -23,15 +25,14 @@ use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::krylov::target::target;
-use crate::feti::{LinearMethod, LinearSolution};
-use crate::parallel::exchange::{highest, total};
-use crate::petsc::Stopped;
+use crate::feti::LinearMethod;
+use crate::parallel::exchange::total;
 use crate::status::Status;
 use crate::Result;
 
 /// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes, in
 /// compact bodies. Much softer springs take more minimisations, much stiffer ones more steps in each.
-const STIFFNESS: f64 = 30.0;
+pub(super) const STIFFNESS: f64 = 30.0;
 
 /// Bodies are compact if they give way at the rows by no more than this many times what the nodes alone do. The springs
 /// of bodies that bend begin as many times softer as these are.
@@ -49,10 +50,10 @@ const FEW_OF_ALL: f64 = 0.02;
 
 /// Reduction of the residual in a Newton step of the first minimisation. Springs turn jumps into forces, which are less
 /// exact than the jumps by the stiffness: with stiffer springs the residual falls further.
-const REDUCTION: f64 = 1e-3;
+pub(super) const REDUCTION: f64 = 1e-3;
 
 /// Reduction of the residual if the step does not lead downwards: first times this, …
-const MORE: f64 = 1e-3;
+pub(super) const MORE: f64 = 1e-3;
 /// … and at most this often.
 const ATTEMPTS: usize = 3;
 
@@ -71,19 +72,23 @@ pub enum Came {
 
 /// The data of the search.
 pub struct Search<'a> {
-    method: &'a LinearMethod,
-    springs: Springs<'a>,
-    at: Iterate,
+    pub(super) method: &'a LinearMethod,
+    pub(super) springs: Springs<'a>,
+    pub(super) at: Iterate,
     /// Whether each owned row is an inequality.
-    counts: Vec<bool>,
+    pub(super) counts: Vec<bool>,
     /// The compliance of the nodes on the owned rows.
-    nodes: Vec<f64>,
-    stiffness: f64,
+    pub(super) nodes: Vec<f64>,
+    pub(super) stiffness: f64,
     /// C and μ.
-    compliance: Vec<f64>,
+    pub(super) compliance: Vec<f64>,
     multiplier: Vec<f64>,
     /// Where the loop is; `None` before the first step.
-    point: Option<Point>,
+    pub(super) point: Option<Point>,
+    /// Springs on rigid motions, where bodies bend.
+    pub(super) anchors: Option<Anchors>,
+    /// The largest residual of a step with anchors.
+    pub(super) largest: f64,
     /// Whether the next step is the first of a minimisation.
     begins: bool,
     /// The largest displacement in the last step.
@@ -93,7 +98,7 @@ pub struct Search<'a> {
     pub few: usize,
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
-    last: Option<Run>,
+    pub(super) last: Option<Run>,
 }
 
 impl<'a> Search<'a> {
@@ -125,6 +130,8 @@ impl<'a> Search<'a> {
             counts,
             nodes,
             point: None,
+            anchors: None,
+            largest: 0.0,
             begins: true,
             length: 0.0,
             n_rows: stiffness.jump.n_global,
@@ -134,16 +141,20 @@ impl<'a> Search<'a> {
             springs: Springs::of(method),
             method,
         };
+        if softer > 1.0 {
+            search.anchors = Anchors::new(&dual, &search.nodes, first);
+        }
         drop(dual);
         search.stiffen();
         Ok(search)
     }
 
-    fn penalty(&self) -> Penalty<'_> {
+    pub(super) fn penalty(&self) -> Penalty<'_> {
         Penalty {
             counts: &self.counts,
             multiplier: &self.multiplier,
             compliance: &self.compliance,
+            anchors: self.anchors.as_ref(),
         }
     }
 
@@ -157,12 +168,16 @@ impl<'a> Search<'a> {
         self.springs.soften(&self.compliance);
     }
 
-    /// μ ← (s)₊, and the set of the rows with μ > 0. Ends a minimisation.
+    /// μ ← (s)₊, and the set of the rows with μ > 0. Anchors go along and become softer. Ends a minimisation.
     pub fn update(&mut self, state: &mut State) {
         let Some(point) = &self.point else {
             return;
         };
         let s = self.penalty().pull(point);
+        if let Some(anchors) = &mut self.anchors {
+            anchors.follow(&point.motion[0]);
+            anchors.soften();
+        }
         self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
         dependent::settle(&self.method.dual().stiffness.jump, &mut self.multiplier);
         state.active = self.set(&self.multiplier);
@@ -225,7 +240,11 @@ impl<'a> Search<'a> {
         let clock = Instant::now();
         let (method, comm) = (self.method, self.method.session.comm());
         let mut active = state.active.clone();
-        let restored = self.hold(&mut active)?;
+        let restored = match self.anchors {
+            // They hold all bodies.
+            Some(_) => 0,
+            None => self.hold(&mut active)?,
+        };
         method.set_active(&active)?;
         self.at.loads.jumps = Some(self.jumps(&active, false));
         let dual = method.dual();
@@ -236,50 +255,13 @@ impl<'a> Search<'a> {
             *l = if *on { *l } else { 0.0 };
         }
         drop(lambda);
-        self.at.begin(&dual)?;
-        let first = self.at.evaluate_projected(&dual)?;
         drop(dual);
-
-        let mut run: Option<Run> = None;
-        let softer = (STIFFNESS / self.stiffness).min(1.0);
-        let mut reduction = REDUCTION * softer;
         let begins = std::mem::take(&mut self.begins);
-        let mut length = None;
-        let mut tolerance = first;
-        let (mut end, mut centred) = (None, false);
-        for _ in 0..ATTEMPTS + usize::from(restored > 0) {
-            let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
-            let least = state.accuracy * least;
-            tolerance = (reduction * first).max(MORE * softer * least);
-            tolerance = tolerance.max(self.least);
-            let control = IterationControl::to(tolerance, self.at.residual.size);
-            let more = method.reach(&mut self.at, control, None)?;
-            run = Some(match run.take() {
-                Some(before) => before.followed_by(more),
-                None => more,
-            });
-            let here = self.look()?;
-            length = match &self.point {
-                Some(point) => self.penalty().length(comm, [point, &here], centred),
-                None => Some(1.0),
-            };
-            end = Some(here);
-            // The set of μ is a guess: from a point where φ falls not, the set of that point is next.
-            if length.is_some() || begins {
-                break;
-            }
-            // Rows that were put back may pull uphill. Springs from the present gaps cannot.
-            if restored > 0 && !centred {
-                centred = true;
-                self.at.loads.jumps = Some(self.jumps(&active, true));
-                self.at.begin(&method.dual())?;
-            } else {
-                reduction *= MORE;
-            }
-            self.at.evaluate_projected(&method.dual())?;
-        }
-        let (run, end) = (run.expect("there is an attempt"), end.expect("it ended"));
-        let t = length.unwrap_or(0.0);
+        let arrival = match self.anchors.take() {
+            Some(anchors) => self.anchored(anchors, begins)?,
+            None => self.held(state, (&active, restored), begins)?,
+        };
+        let (run, end, t) = (arrival.run, arrival.end, arrival.length.unwrap_or(0.0));
         let point = match &self.point {
             Some(point) => point.towards(&end, t),
             None => end,
@@ -295,10 +277,6 @@ impl<'a> Search<'a> {
         state.lambda = self.at.lambda.to_vec()?;
         state.before = active;
         state.active = next;
-        let relative = |r: f64| match state.reference {
-            reference if reference > 0.0 => r / reference,
-            _ => r,
-        };
         let step = Step {
             method: ContactType::AugmentedLagrangian,
             active: n_active,
@@ -310,8 +288,8 @@ impl<'a> Search<'a> {
                 true => method.spectrum()?,
                 false => None,
             },
-            residual: relative(*run.residuals.last().unwrap_or(&first)),
-            tolerance: relative(tolerance),
+            residual: arrival.residual,
+            tolerance: arrival.tolerance,
             wrong,
             seconds: clock.elapsed().as_secs_f64(),
         };
@@ -327,8 +305,80 @@ impl<'a> Search<'a> {
         Ok((step, status, came))
     }
 
+    /// The end of a Newton step without anchors, as exact as it has to be to lead downwards. Collective.
+    fn held(
+        &mut self,
+        state: &State,
+        (active, restored): (&[bool], usize),
+        begins: bool,
+    ) -> Result<Arrival> {
+        let method = self.method;
+        let first = {
+            let dual = method.dual();
+            self.at.begin(&dual)?;
+            self.at.evaluate_projected(&dual)?
+        };
+        let mut run: Option<Run> = None;
+        let softer = (STIFFNESS / self.stiffness).min(1.0);
+        let mut reduction = REDUCTION * softer;
+        let mut length = None;
+        let mut tolerance = first;
+        let (mut end, mut centred) = (None, false);
+        for _ in 0..ATTEMPTS + usize::from(restored > 0) {
+            let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
+            let least = state.accuracy * least;
+            tolerance = (reduction * first).max(MORE * softer * least);
+            tolerance = tolerance.max(self.least);
+            let control = IterationControl::to(tolerance, self.at.residual.size);
+            let more = method.reach(&mut self.at, control, None)?;
+            run = Some(match run.take() {
+                Some(before) => before.followed_by(more),
+                None => more,
+            });
+            let here = self.look()?;
+            length = self.length_to(&here, centred);
+            end = Some(here);
+            // The set of μ is a guess: from a point where φ falls not, the set of that point is next.
+            if length.is_some() || begins {
+                break;
+            }
+            // Rows that were put back may pull uphill. Springs from the present gaps cannot.
+            if restored > 0 && !centred {
+                centred = true;
+                self.at.loads.jumps = Some(self.jumps(active, true));
+                self.at.begin(&method.dual())?;
+            } else {
+                reduction *= MORE;
+            }
+            self.at.evaluate_projected(&method.dual())?;
+        }
+        let run = run.expect("there is an attempt");
+        let relative = |r: f64| match state.reference {
+            reference if reference > 0.0 => r / reference,
+            _ => r,
+        };
+        Ok(Arrival {
+            end: end.expect("it ended"),
+            length,
+            residual: relative(*run.residuals.last().unwrap_or(&first)),
+            tolerance: relative(tolerance),
+            run,
+        })
+    }
+
+    /// How far to go to a point from where the loop is; `None` if φ does not fall. Collective.
+    pub(super) fn length_to(&self, end: &Point, beyond: bool) -> Option<f64> {
+        match &self.point {
+            Some(point) => {
+                let comm = self.method.session.comm();
+                self.penalty().length(comm, [point, end], beyond)
+            }
+            None => Some(1.0),
+        }
+    }
+
     /// The displacements of the present λ as the rows see them. Collective.
-    fn look(&mut self) -> Result<Point> {
+    pub(super) fn look(&mut self) -> Result<Point> {
         let dual = self.method.dual();
         let residual = &mut self.at.residual;
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
@@ -342,57 +392,7 @@ impl<'a> Search<'a> {
         Ok(Point {
             gap,
             force: self.at.lambda.to_vec()?,
+            motion: Default::default(),
         })
-    }
-
-    /// Whether the springs give way by no more than the tolerance, and their forces are those of the displacements to
-    /// the digits that this asks for. Collective.
-    pub fn is_solution(&self, rtol: f64) -> Result<bool> {
-        let comm = self.method.session.comm();
-        let Some(point) = &self.point else {
-            return Ok(false);
-        };
-        let pull = self.penalty().pull(point);
-        let pairs = || (0..pull.len()).filter(|&i| self.counts[i]);
-        let apart = pairs().map(|i| (pull[i].max(0.0) - point.force[i]).abs());
-        let force = pairs().map(|i| point.force[i].abs());
-        let (apart, force) = (apart.fold(0.0, f64::max), force.fold(0.0, f64::max));
-        if highest(comm, apart) > rtol.sqrt() * highest(comm, force) {
-            return Ok(false);
-        }
-        let dual = self.method.dual();
-        let jump = &dual.stiffness.jump;
-        let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());
-        let open = open.filter(|(i, _)| self.counts[*i]);
-        let open = open.fold(0.0f64, |a, (i, gap)| match jump.active[i] {
-            true => a.max(gap.abs()),
-            false => a.max(*gap),
-        });
-        Ok(highest(comm, open) <= rtol * self.length)
-    }
-
-    /// The solution at the last Newton step. Collective.
-    pub fn finish(
-        mut self,
-        steps: &[Step],
-        seconds: f64,
-        status: Status,
-    ) -> Result<LinearSolution> {
-        self.look()?;
-        self.rigid();
-        // P_2 belonged to F + C: what follows is done with F.
-        let active = self.method.dual().stiffness.jump.active.clone();
-        self.method.set_active(&active)?;
-        let last = self.last;
-        let run = Run {
-            iterations: steps.iter().map(|s| s.iterations).sum(),
-            status,
-            residuals: last.as_ref().map_or(Vec::new(), |r| r.residuals.clone()),
-            estimate: last.and_then(|r| r.estimate),
-            stopped: Stopped::No,
-        };
-        let mut at = self.at;
-        at.loads.jumps = None;
-        self.method.recover(at, run, seconds)
     }
 }

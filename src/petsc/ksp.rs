@@ -49,6 +49,14 @@ impl ConvergedReason {
         }
     }
 
+    /// The reason of a run that reached its tolerance.
+    pub fn rtol() -> ConvergedReason {
+        ConvergedReason {
+            code: ConvergedReason::RTOL,
+            name: "CONVERGED_RTOL".into(),
+        }
+    }
+
     /// Whether the solver converged.
     pub fn converged(&self) -> bool {
         self.code > 0

@@ -9,6 +9,7 @@ fn point(u: f64, c: &[f64]) -> Point {
     Point {
         gap: c.iter().map(|c| u - c).collect(),
         force: vec![force; c.len()],
+        motion: Default::default(),
     }
 }
 
@@ -28,6 +29,7 @@ fn the_minimum_along_the_step() {
             counts: &[true; 4],
             multiplier: &[0.0, 0.1, 0.0, 2.0],
             compliance: &[0.5, 0.01, 1e-6, 0.3],
+            anchors: None,
         };
         for from in [-5.0, 0.0, 1.2] {
             let (a, b) = (point(from, &gaps), point(4.0, &gaps));
@@ -60,6 +62,7 @@ fn a_step_to_the_minimum_has_its_full_length() {
             counts: &[true],
             multiplier: &[0.0],
             compliance: &[0.5],
+            anchors: None,
         };
         // u² − 8u + (u − 1)₊² has its minimum at 2.5.
         let (a, b) = (point(0.0, &[1.0]), point(2.5, &[1.0]));
@@ -76,6 +79,7 @@ fn a_step_may_go_beyond_its_end() {
             counts: &[true],
             multiplier: &[0.0],
             compliance: &[0.5],
+            anchors: None,
         };
         let start = point(0.0, &[1.0]);
         for end in [1e-6, 0.1, 1.0, 2.0, 2.5, 3.0] {
@@ -96,14 +100,17 @@ fn rows_that_do_not_count_change_nothing() {
                 counts,
                 multiplier: &[0.0, 0.0],
                 compliance,
+                anchors: None,
             };
             let from = Point {
                 gap: vec![-1.0, 7.0],
                 force: vec![8.0, 3.0],
+                motion: Default::default(),
             };
             let to = Point {
                 gap: vec![3.0, -9.0],
                 force: vec![0.0, -5.0],
+                motion: Default::default(),
             };
             penalty.length(session.comm(), [&from, &to], false)
         };
@@ -111,5 +118,45 @@ fn rows_that_do_not_count_change_nothing() {
             of(&[true, false], &[0.1, 0.0]),
             of(&[true, false], &[0.1, 1.0])
         );
+    });
+}
+
+/// Two bodies, each with one motion α and nothing else: u = α, no K. The load e pulls, rows u ≤ c hold.
+#[test]
+fn anchors_count_along_the_step() {
+    with_session(|session| {
+        let (e, c) = ([3.0, -1.0], [0.5, 2.0]);
+        let anchors = Anchors::given(vec![2.0, 0.5], vec![0.1, -0.2]);
+        let penalty = Penalty {
+            counts: &[true; 2],
+            multiplier: &[0.0, 0.3],
+            compliance: &[0.5, 0.1],
+            anchors: Some(&anchors),
+        };
+        // Any λ with y = e − λ has K u = f − Bᵀλ − y.
+        let point = |u: [f64; 2], force: [f64; 2]| Point {
+            gap: vec![u[0] - c[0], u[1] - c[1]],
+            force: force.to_vec(),
+            motion: [u.to_vec(), vec![e[0] - force[0], e[1] - force[1]]],
+        };
+        let value = |u: [f64; 2]| -> f64 {
+            let s = penalty.pull(&point(u, [0.0; 2]));
+            let of = |k: usize| {
+                let stretch = u[k] - [0.1, -0.2][k];
+                let spring = 0.5 * penalty.compliance[k] * s[k].max(0.0).powi(2);
+                0.5 * [2.0, 0.5][k] * stretch * stretch - e[k] * u[k] + spring
+            };
+            of(0) + of(1)
+        };
+        let (a, b) = ([-1.0, 1.0], [2.0, 2.5]);
+        let ends = [&point(a, [0.7, 0.0]), &point(b, [-0.4, 1.5])];
+        for t in [0.1, 0.5, 1.0] {
+            let at = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+            let (is, should) = (
+                penalty.change(session.comm(), ends, t),
+                value(at) - value(a),
+            );
+            assert!((is - should).abs() < 1e-13, "{t}: {is} {should}");
+        }
     });
 }

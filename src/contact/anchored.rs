@@ -1,0 +1,77 @@
+//! A Newton step with anchors.
+
+use super::anchors::Anchors;
+use super::damping::Point;
+use super::judge;
+use super::newton::{Search, MORE, REDUCTION, STIFFNESS};
+use crate::feti::krylov::iterate::Run;
+use crate::petsc::{ConvergedReason, Stopped};
+use crate::status::Status;
+use crate::Result;
+
+/// A residual below this part of the largest so far is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// The end of a Newton step, how far to go to it, and how exact it is, relative to the reference.
+pub(super) struct Arrival {
+    pub run: Run,
+    pub end: Point,
+    pub length: Option<f64>,
+    pub residual: f64,
+    pub tolerance: f64,
+}
+
+impl Search<'_> {
+    /// The end of a step, as exact as it has to be to lead downwards. Residuals are relative to that at the beginning.
+    /// Collective.
+    pub(super) fn anchored(&mut self, anchors: Anchors, begins: bool) -> Result<Arrival> {
+        let method = self.method;
+        let give = self.nodes.iter().zip(&self.compliance);
+        let give: Vec<f64> = give.map(|(node, spring)| node + spring).collect();
+        let mut goal = [REDUCTION * (STIFFNESS / self.stiffness).min(1.0), 0.0];
+        let (mut iterations, mut first) = (0, None);
+        let found = loop {
+            goal[1] = goal[1].max(ROUNDING * self.largest);
+            let found = anchors.solve(method, &mut self.at, &give, goal);
+            self.anchors = Some(anchors.clone());
+            let found = found?;
+            iterations += found.iterations;
+            let [before, after] = found.residuals;
+            let first = *first.get_or_insert(before);
+            self.largest = self.largest.max(before);
+            let rounding = ROUNDING * self.largest;
+            let dual = method.dual();
+            let residual = &mut self.at.residual;
+            residual.shift(&dual, &found.place);
+            let gap = judge::all_gaps(&dual, residual)?;
+            self.length = residual.length(&dual);
+            let end = Point {
+                gap,
+                force: self.at.lambda.to_vec()?,
+                motion: [found.place, found.force],
+            };
+            let length = self.length_to(&end, false);
+            if length.is_some() || begins || after <= rounding || !found.reached {
+                let relative = |r: f64| if first > 0.0 { r / first } else { r };
+                break Arrival {
+                    end,
+                    length,
+                    residual: relative(after),
+                    tolerance: relative((goal[0] * before).max(goal[1])),
+                    run: Run {
+                        iterations,
+                        status: Status::Krylov(match found.reached {
+                            true => ConvergedReason::rtol(),
+                            false => ConvergedReason::its(),
+                        }),
+                        residuals: vec![first, after],
+                        estimate: None,
+                        stopped: Stopped::No,
+                    },
+                };
+            }
+            goal = [0.0, MORE * after];
+        };
+        Ok(found)
+    }
+}
