@@ -3,7 +3,7 @@
 use super::anchors::Anchors;
 use super::damping::Point;
 use super::judge;
-use super::newton::{Search, MORE, REDUCTION, STIFFNESS};
+use super::newton::{Search, MORE, REDUCTION, STIFFER, STIFFNESS};
 use crate::feti::krylov::iterate::Run;
 use crate::petsc::{ConvergedReason, Stopped};
 use crate::status::Status;
@@ -21,7 +21,44 @@ pub(super) struct Arrival {
     pub tolerance: f64,
 }
 
+/// A step has sent bodies away if their displacements are so many times as large as those of another step.
+const FAR: f64 = 1e3;
+
+/// The begin of a search, and the least displacements of its steps.
+pub(super) struct Begin {
+    stiffness: f64,
+    active: Vec<bool>,
+    length: f64,
+}
+
+impl Begin {
+    /// With springs of this stiffness and this set.
+    pub fn new(stiffness: f64, active: &[bool]) -> Begin {
+        Begin {
+            stiffness,
+            active: active.to_vec(),
+            length: f64::INFINITY,
+        }
+    }
+}
+
 impl Search<'_> {
+    /// Once a step has sent bodies away that bend: begins anew with anchors. Returns the set. Collective.
+    pub(super) fn anchor(&mut self) -> Option<Vec<bool>> {
+        let begin = self.begin.as_mut()?;
+        begin.length = begin.length.min(self.length);
+        if self.length <= FAR * begin.length {
+            return None;
+        }
+        let begin = self.begin.take()?;
+        self.anchors = Anchors::new(&self.method.dual(), &self.nodes, begin.stiffness);
+        self.point = None;
+        self.multiplier.fill(0.0);
+        self.stiffness = begin.stiffness / STIFFER;
+        self.stiffen();
+        Some(begin.active)
+    }
+
     /// The end of a step, as exact as it has to be to lead downwards. Residuals are relative to that at the beginning.
     /// Collective.
     pub(super) fn anchored(&mut self, anchors: Anchors, begins: bool) -> Result<Arrival> {

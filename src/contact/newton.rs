@@ -9,7 +9,7 @@
 
 use std::time::Instant;
 
-use super::anchored::Arrival;
+use super::anchored::{Arrival, Begin};
 use super::anchors::Anchors;
 use super::damping::{Penalty, Point};
 use super::dependent;
@@ -39,7 +39,7 @@ pub(super) const STIFFNESS: f64 = 30.0;
 const COMPACT: f64 = 7.0;
 
 /// Factor by which the springs become stiffer from one minimisation to the next, …
-const STIFFER: f64 = 3.0;
+pub(super) const STIFFER: f64 = 3.0;
 
 /// … and the largest stiffness. Beyond it C is lost in the rounding of F.
 const STIFFEST: f64 = 1e9;
@@ -82,11 +82,13 @@ pub struct Search<'a> {
     pub(super) stiffness: f64,
     /// C and μ.
     pub(super) compliance: Vec<f64>,
-    multiplier: Vec<f64>,
+    pub(super) multiplier: Vec<f64>,
     /// Where the loop is; `None` before the first step.
     pub(super) point: Option<Point>,
     /// Springs on rigid motions, where bodies bend.
     pub(super) anchors: Option<Anchors>,
+    /// The begin of the search, for a second one with anchors.
+    pub(super) begin: Option<Begin>,
     /// The largest residual of a step with anchors.
     pub(super) largest: f64,
     /// Whether the next step is the first of a minimisation.
@@ -131,6 +133,7 @@ impl<'a> Search<'a> {
             nodes,
             point: None,
             anchors: None,
+            begin: (softer > 1.0).then(|| Begin::new(first, &state.active)),
             largest: 0.0,
             begins: true,
             length: 0.0,
@@ -141,9 +144,6 @@ impl<'a> Search<'a> {
             springs: Springs::of(method),
             method,
         };
-        if softer > 1.0 {
-            search.anchors = Anchors::new(&dual, &search.nodes, first);
-        }
         drop(dual);
         search.stiffen();
         Ok(search)
@@ -268,7 +268,7 @@ impl<'a> Search<'a> {
         };
         let s = self.penalty().pull(&point);
         self.point = Some(point);
-        let next = self.set(&s);
+        let next = self.anchor().unwrap_or_else(|| self.set(&s));
         let (was, now) = (&active, &next);
         let [_, entering, leaving] = changes(comm, &was[rows.clone()], &now[rows.clone()]);
         let [n_active, entered, left] = changes(comm, &state.before[rows.clone()], &active[rows]);
@@ -294,6 +294,7 @@ impl<'a> Search<'a> {
             seconds: clock.elapsed().as_secs_f64(),
         };
         let came = match t {
+            _ if self.point.is_none() => Came::Somewhere,
             0.0 if begins => Came::Somewhere,
             0.0 => Came::Nowhere,
             1.0 if wrong == 0 => Came::Down,
