@@ -196,8 +196,8 @@ struct Error {
     free: Vec<usize>,
 }
 
-/// A motion of several bodies counts as free where rows resist it by less than this part of what they could, the root of
-/// the smallest pivot: multipliers may leave so much along it.
+/// A motion of several bodies counts as free where rows resist it by less than this part of what they could, the root
+/// of the smallest pivot: multipliers may leave so much along it.
 const FREE: f64 = 1e-5;
 
 /// The estimate of the error is one, and u and λ have errors.

@@ -8,9 +8,9 @@
 //!     [  Gᵀ      I     0 ] [ α ]   [  e   ]
 //! ```
 //!
-//! Rows may hold a motion by so little that a Newton step sends bodies far beyond the model. Then the search begins anew
-//! with anchors: a body goes no further than what is left of its load stretches them. They move along and become softer
-//! from one minimisation to the next: the proximal method of multipliers [Rockafellar 1976].
+//! Rows may hold a motion by so little that a Newton step sends bodies far beyond the model. Then the search begins
+//! anew with anchors: a body goes no further than what is left of its load stretches them. They move along and become
+//! softer from one minimisation to the next: the proximal method of multipliers [Rockafellar 1976].
 //!
 //! y are multipliers like λ. CG runs in the space of (λ, y) with Gᵀλ + y = 0, with the projector of these two.
 
