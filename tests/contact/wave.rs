@@ -47,8 +47,8 @@ fn three_rings_have_the_energy_of_the_quadratic_programme() {
     assert!(near(is, should, 1e-6), "{is:e}, expected {should:e}");
 }
 
-/// Its solution has three rows at each crest and ten motions that nothing holds, some of which other sets hold by 1e-3 of
-/// a normal: without anchors the loop did not end. SMALBE, without Newton steps, comes to the same energy:
+/// Its solution has three rows at each crest and ten motions that nothing holds, some of which other sets hold by 1e-3
+/// of a normal: without anchors the loop did not end. SMALBE, without Newton steps, comes to the same energy:
 /// `fetifeti solve out/wave_spring.toml -fetifeti_contact_type smalbe` after `scripts/wave_spring.py 4 48 out`.
 #[test]
 fn four_rings_that_touch_at_their_crests_alone_have_the_energy_of_smalbe() {
