@@ -153,7 +153,7 @@ fn of_subdomain(scene: &Scene, sub: &Subdomain, u: &[f64], step: usize) -> Resul
     let body = &scene.bodies[sub.body];
     let (c, centre) = (body.components, body.ball().0);
     let inside = scene.body_of(sub.index).1;
-    let all = c * body.mesh().subdomain_size(inside);
+    let all = c * body.mesh().subdomain_nodes(inside).len();
     let points = sub.coordinates.as_ref();
     let Some(points) = points.filter(|_| body.spec.springs.is_empty() && all == sub.f.len()) else {
         return scene.forces(sub.index, step, u, centre);

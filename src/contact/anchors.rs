@@ -149,8 +149,7 @@ impl Anchors {
     }
 
     /// The solution for the load and the set of `at`, from its λ: until the residual has fallen by `reduction`, or
-    /// to `least`.
-    /// `give` is the compliance of the nodes and springs on the owned rows. Collective.
+    /// to `least`. `give` is the compliance of the nodes and springs on the owned rows. Collective.
     pub fn solve(
         &self,
         method: &LinearMethod,

@@ -105,14 +105,6 @@ impl Mesh {
         }
     }
 
-    /// The number of nodes of subdomain `s`.
-    pub fn subdomain_size(&self, s: usize) -> usize {
-        match self {
-            Mesh::Grid(grid) => grid.block(s).places().count(),
-            Mesh::Cells(mesh) => mesh.parts.nodes(s).len(),
-        }
-    }
-
     /// The subdomain of lowest number that contains the node.
     pub fn owner(&self, node: usize) -> usize {
         match self {
