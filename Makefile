@@ -91,7 +91,8 @@ NEWER_SLEPC ?= 3.22.2
 test-newer: setup-tests ## Build a newer PETSc and SLEPc, and test the plug-in, the C API and the solver with them
 	scripts/newer_petsc.sh "$(NEWER_DIR)" "$(NEWER_PETSC)" "$(NEWER_SLEPC)"
 	source "$(NEWER_DIR)/env" && export CARGO_TARGET_DIR="$(NEWER_DIR)/build-$(NEWER_PETSC)" && \
-	cargo test --no-fail-fast --lib --test embedding --test linear --test ranks --test contact \
+	cargo test --workspace --no-fail-fast --lib --test operators --test embedding --test linear --test ranks \
+		--test contact \
 		-- --skip petsc4py --skip fortran --skip random
 
 # Some of malloc, valgrind, address, thread and miri; all without.
@@ -115,10 +116,9 @@ fmt: ## Format the sources
 lint: setup ## Check format and lints only
 	cargo fmt --all -- --check
 	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --lib --no-default-features -- -D warnings
 
-docs: setup ## Build the documentation of the crate
-	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+docs: setup ## Build the documentation of the crates
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
 clean: ## Remove everything that was built or written
 	cargo clean

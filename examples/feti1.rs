@@ -8,8 +8,8 @@
 
 use std::process::ExitCode;
 
-use fetifeti::scene::{free_all_round, Field, GridSpec, Scene};
 use fetifeti::{max_all, FetiFeti, MethodSettings, Result, Session};
+use fetifeti_scene::{free_all_round, Field, GridSpec, Scene};
 
 fn main() -> ExitCode {
     fetifeti::run(run)

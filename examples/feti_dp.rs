@@ -9,9 +9,9 @@
 
 use std::process::ExitCode;
 
-use fetifeti::mesh::BoxMesh;
-use fetifeti::scene::{BodySpec, By, Field, Scene, SceneSpec};
 use fetifeti::{max_all, FetiFeti, MethodSettings, Result, Session};
+use fetifeti_scene::mesh::BoxMesh;
+use fetifeti_scene::{BodySpec, By, Field, Scene, SceneSpec};
 
 /// ρ of each column.
 const RHO: [f64; 4] = [1.0, 1e3, 1e-3, 1.0];

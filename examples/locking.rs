@@ -7,7 +7,7 @@
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use fetifeti::fem::cell::{self, Cure, Element, Material, Plane};
+use fetifeti_scene::elements::cell::{self, Cure, Element, Material, Plane};
 
 /// A block of cells: corner points of its map, cells per direction.
 struct Block {

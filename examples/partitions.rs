@@ -10,12 +10,13 @@
 
 use std::process::ExitCode;
 
-use fetifeti::fem::cell::{Cure, Plane};
-use fetifeti::fem::Physics;
-use fetifeti::mesh::partition::{Adjacency, Interface, Partition, Sharing};
-use fetifeti::mesh::{places, BoxMesh, CellKind, CellMesh, Cells, SideGroup};
-use fetifeti::scene::{BodySpec, Field, Scene, SceneSpec};
 use fetifeti::{Error, FetiFeti, MethodSettings, Result, Session};
+use fetifeti_scene::elements::cell::{Cure, Plane};
+use fetifeti_scene::elements::form::Physics;
+use fetifeti_scene::elements::kind::CellKind;
+use fetifeti_scene::mesh::partition::{Adjacency, Interface, Partition, Sharing};
+use fetifeti_scene::mesh::{places, BoxMesh, CellMesh, Cells, SideGroup};
+use fetifeti_scene::{BodySpec, Field, Scene, SceneSpec};
 
 /// Regular subdomains along an axis of the square, and of the cube.
 const CUTS: [usize; 2] = [8, 4];

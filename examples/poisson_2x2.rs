@@ -8,9 +8,10 @@
 use std::f64::consts::PI;
 use std::process::ExitCode;
 
-use fetifeti::fem::{ErrorNorms, Quadrature};
-use fetifeti::scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
 use fetifeti::{max_all, sum_all, Error, FetiFeti, MethodSettings, Result, Session};
+use fetifeti_scene::assembly::ErrorNorms;
+use fetifeti_scene::elements::q1::Quadrature;
+use fetifeti_scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
 
 /// Elements along the unit square.
 const N: usize = 64;

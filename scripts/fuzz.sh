@@ -44,7 +44,7 @@ for target in "${targets[@]}"; do
     case $target in
         scene) seeds+=(examples/scenes) ;;
         mesh) seeds+=(tests/fixtures/meshes) ;;
-        deck) seeds+=(tests/inside/mesh/deck) ;;
+        deck) seeds+=(crates/deck/tests) ;;
     esac
     options=(-timeout=20 -rss_limit_mb=4096 -print_final_stats=1 -verbosity=0 "-artifact_prefix=$found/")
     [ "$seconds" -eq 0 ] || options+=("-max_total_time=$seconds")

@@ -165,25 +165,25 @@ thread() {
 # in the target it takes its loops in Rust.
 miri() {
     nightly rust-src miri
-    local name="" filters=()
+    local name="" filters=() skipped=()
+    while read -r word; do skipped+=(--skip "${word#-}"); done < <(grep '^-' "$supp/miri.txt")
     while read -r word _; do
         case $word in
-            "" | \#*) ;;
-            \[*) miri_run "$name" "${filters[@]}"; name=${word//[\[\]]/} filters=() ;;
-            -*) filters+=(--skip "${word#-}") ;;
+            "" | \#* | -*) ;;
+            \[*) miri_run "$name" "${filters[@]}" "${skipped[@]}"; name=${word//[\[\]]/} filters=() ;;
             *) filters+=("$word") ;;
         esac
     done < <(cat "$supp/miri.txt"; echo "[]")
 }
 
-# miri_run NAME FILTER...: unit tests whose names have one of the filters.
+# miri_run CRATE FILTER...: unit tests whose names have one of the filters.
 miri_run() {
     [ -n "$1" ] || return 0
     # Miri would put noise on powi, exp and the like, where tests ask for their last bits.
     local flags="-Zmiri-disable-isolation -Zmiri-deterministic-floats"
     run "miri $1" 'Undefined Behavior|FAILED| 0 passed' \
         env CARGO_TARGET_DIR="$out/miri" MIRIFLAGS="$flags" RUSTFLAGS="-Ctarget-cpu=x86-64" \
-        cargo +nightly miri test --lib -- "${@:2}"
+        cargo +nightly miri test --package "$1" --lib -- "${@:2}"
 }
 
 for part in "${parts[@]}"; do

@@ -67,8 +67,8 @@
 //! # Example
 //!
 //! ```no_run
-//! use fetifeti::scene::{GridSpec, Scene};
 //! use fetifeti::{FetiFeti, Result, Session, Settings};
+//! use fetifeti_scene::{GridSpec, Scene};
 //!
 //! fn solve(session: &Session) -> Result<()> {
 //!     // The unit square, held all round, f = 1: 2 × 2 bodies of 4 × 4 subdomains and 32 × 32 elements.
@@ -92,66 +92,36 @@
 //! \[Lee\] J. Lee, *Convergence analysis of a new domain decomposition method for a linearized contact problem*, 2010.
 //! `docs/theory.md` in the repository has the other references and the reasons behind the choices; `docs/options.md`
 //! has every option. `docs/README.md` says which page is for whom.
-#![deny(unsafe_code)]
-#![deny(missing_docs)]
 
-#[cfg(feature = "cli")]
-mod assembled;
-#[cfg(feature = "cli")]
-pub(crate) mod baselines;
 #[allow(unsafe_code)]
 mod capi;
-#[cfg(feature = "cli")]
-pub mod checkpoint;
-pub(crate) mod cholesky;
-#[cfg(feature = "cli")]
-pub mod cli;
 pub mod contact;
-pub(crate) mod embed;
-pub mod error;
-pub mod fem;
+mod embed;
 pub mod feti;
-pub(crate) mod linalg;
-pub mod mesh;
-pub(crate) mod mortar;
-pub(crate) mod parallel;
-#[allow(unsafe_code)]
-pub mod petsc;
-#[cfg(feature = "cli")]
-pub mod report;
-pub mod scene;
 pub mod settings;
 pub mod solution;
 pub mod solver;
 pub mod status;
-#[cfg(feature = "cli")]
-pub mod study;
 pub mod substructures;
 
-// With this name, tests use `fetifeti` inside the crate as they do outside.
 #[cfg(test)]
-extern crate self as fetifeti;
-/// What `make fuzz` feeds; cargo-fuzz compiles with this condition.
-#[cfg(fuzzing)]
-#[path = "../tests/fuzz/readers.rs"]
-pub mod fuzz;
-#[cfg(all(test, feature = "cli"))]
-#[path = "../tests/inside/mod.rs"]
-mod inside;
-/// What `make soak` runs.
-#[cfg(any(fuzzing, all(test, feature = "cli")))]
-#[path = "../tests/fuzz/soak.rs"]
-pub mod soak;
+#[path = "../tests/support/matrices.rs"]
+#[allow(dead_code)]
+mod matrices;
+#[cfg(test)]
+#[path = "../tests/support/mpi.rs"]
+#[allow(dead_code)]
+mod mpirun;
 #[cfg(test)]
 #[path = "../tests/support/session.rs"]
 mod testing;
 
-pub use error::{Error, Result};
+pub use base::linalg::csr::Csr;
+pub use base::{Error, Result};
+pub use capi::suits as processor_suits;
 pub use feti::{MethodSettings, Numbers, PcType, Primal, ProjectorKind, Scaling, Spectrum};
-pub use linalg::csr::Csr;
 pub use parallel::exchange::{gather_all, max_all, sum_all};
 pub use petsc::Session;
-pub use scene::Scene;
 pub use settings::Settings;
 pub use solution::Solution;
 pub use solver::FetiFeti;
@@ -177,5 +147,5 @@ pub fn run(work: impl FnOnce(&Session) -> Result<()>) -> std::process::ExitCode 
 
 /// The subdomains of this rank if `n` subdomains are dealt out in equal runs. Any other distribution is as good.
 pub fn share(session: &Session, n: usize) -> std::ops::Range<usize> {
-    mesh::contiguous_share(n, session.size(), session.rank())
+    parallel::contiguous_share(n, session.size(), session.rank())
 }

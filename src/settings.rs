@@ -2,8 +2,8 @@
 
 use crate::contact::ContactSettings;
 use crate::feti::MethodSettings;
-use crate::petsc::{Options, Session};
 use crate::Result;
+use petsc::{Options, Session};
 
 /// All settings. Krylov settings live in the KSP (`fetifeti_ksp_`).
 ///

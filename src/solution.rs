@@ -67,7 +67,7 @@ impl Solution {
     }
 
     /// The multipliers inside bodies, which come before those of the rows between bodies.
-    pub(crate) fn inside_bodies(&self) -> &[f64] {
+    pub fn inside_bodies(&self) -> &[f64] {
         &self.lambda[..self.lambda.len() - self.rows.len()]
     }
 

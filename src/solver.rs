@@ -11,13 +11,13 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::{
     Communication, Facts, FreeMotion, LinearMethod, LinearSolution, Numbers, Spectrum,
 };
-use crate::parallel::exchange::any;
-use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::substructures::{idle, InterfaceRow, SolvedRow, Substructures};
 use crate::Result;
 pub use early::{Discretisation, PART};
+use parallel::exchange::any;
+use petsc::{cite, Ksp, Session, Stage};
 
 const CITATION: &str = "@techreport{Lee2010,
   author = {Jungho Lee},
@@ -30,7 +30,8 @@ const CITATION: &str = "@techreport{Lee2010,
 /// The FETI-FETI solver of one problem: the linear method, and the contact loop around it.
 ///
 /// ```no_run
-/// use fetifeti::{FetiFeti, Result, Scene, Session, Settings};
+/// use fetifeti::{FetiFeti, Result, Session, Settings};
+/// use fetifeti_scene::Scene;
 ///
 /// fn solve(session: &Session) -> Result<()> {
 ///     let scene = Scene::load("examples/scenes/model_contact.toml")?;
@@ -56,6 +57,11 @@ pub struct FetiFeti {
 }
 
 impl FetiFeti {
+    /// The linear method with its operators, for studies and checks.
+    pub fn method(&self) -> &LinearMethod {
+        &self.method
+    }
+
     /// Factors, assembles the coarse problems and sets the Krylov method up. Collective.
     ///
     /// # Errors
@@ -226,7 +232,7 @@ impl FetiFeti {
 
     /// The start of the contact loop with the multipliers inside bodies of an earlier solution, and a multiplier and a
     /// state for each row that this rank provides.
-    pub(crate) fn start(&self, inside: &[f64], rows: &[(f64, bool)]) -> contact::State {
+    pub fn start(&self, inside: &[f64], rows: &[(f64, bool)]) -> contact::State {
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
         let between = jump.rows_between_bodies();
@@ -331,7 +337,7 @@ impl FetiFeti {
     }
 
     /// F, M⁻¹ and P for the rows that hold.
-    pub(crate) fn dual(&self) -> Ref<'_, Dual> {
+    pub fn dual(&self) -> Ref<'_, Dual> {
         self.method.dual()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::petsc::ConvergedReason;
+use petsc::ConvergedReason;
 
 /// The reason why a solve stopped. It is displayed as PETSc names its reasons, such as `CONVERGED_RTOL`.
 #[derive(Debug, Clone, PartialEq, Eq)]

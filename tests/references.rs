@@ -2,13 +2,13 @@
 //!
 //! Held against the repository, in every text that git knows:
 //!
-//! - a path that begins with `src/`, `tests/`, `docs/`, `wrappers/`, `examples/` or `scripts/`;
+//! - a path that begins with `src/`, `crates/`, `tests/`, `docs/`, `wrappers/`, `examples/` or `scripts/`;
 //! - the target of a link in a page, with its heading where it names one;
 //! - a section of docs/theory.md, written `docs/theory.md, section 9` or `[theory](theory.md), section 9`;
 //! - in CONTRIBUTING.md and docs/architecture.md a name before its file, `find` (`src/scene/rows/entries.rs`): the file
 //!   has it.
 //!
-//! docs/architecture.md has a row for each room of tests/architecture.rs, in the same order.
+//! docs/architecture.md has a row for each crate and for each room of the solver (tests/architecture.rs).
 //!
 //! Longer lines are for what cannot be broken: rows of tables, and in pages what is shown as it is.
 
@@ -16,8 +16,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Folders whose files are named by their path.
-const ROOTS: [&str; 6] = [
+const ROOTS: [&str; 7] = [
     "src/",
+    "crates/",
     "tests/",
     "docs/",
     "wrappers/",
@@ -89,8 +90,11 @@ fn paths(text: &str) -> BTreeSet<String> {
         // `../../docs/x.md` is a link, and is followed from where it stands.
         let path = word.trim_start_matches("./").trim_end_matches(['.', '/']);
         let in_root = ROOTS.iter().any(|r| path.starts_with(r));
-        // The beginning of several names, a name to be chosen, and a folder of PETSc's.
-        let other = path.ends_with('_') || path.contains("NAME") || path.starts_with("src/ksp");
+        // The beginning of several names, a name to be chosen, a folder of PETSc's, and a manifest's own program.
+        let other = path.ends_with('_')
+            || path.contains("NAME")
+            || path.starts_with("src/ksp")
+            || path == "src/main.rs";
         if in_root && !other {
             found.insert(path.to_string());
         }
@@ -303,30 +307,36 @@ fn names_stand_in_their_files() {
     }
 }
 
-/// The rooms of tests/architecture.rs.
-fn rooms() -> Vec<String> {
+/// The crates, and the rooms of the solver that tests/architecture.rs lists.
+fn rooms() -> BTreeSet<String> {
     let test = read("tests/architecture.rs");
-    let list = test.split("const ORDER").nth(1).expect("the order");
+    let list = test.split("const ROOMS").nth(1).expect("the order");
     let list = list.split("];").next().expect("its end");
-    let names = list.split('"').skip(1).step_by(2).map(String::from);
-    names.collect()
+    let rooms = list.split('"').skip(1).step_by(2);
+    let rooms = rooms.map(|name| format!("src/{name}"));
+    let crates = std::fs::read_dir(root().join("crates")).expect("crates");
+    let crates = crates.map(|c| c.expect("a crate").file_name());
+    let crates = crates.map(|name| format!("crates/{}", name.to_string_lossy()));
+    rooms.chain(crates).collect()
 }
 
-/// The rooms of a page's first table.
-fn mapped(page: &str) -> Vec<String> {
-    let rows = page.lines().skip_while(|l| !l.starts_with("| `src/"));
-    let rows = rows.take_while(|l| l.starts_with('|'));
-    let names = rows.filter_map(|l| l.strip_prefix("| `src/")?.split('`').next());
-    names
-        .map(|n| n.trim_end_matches(".rs").to_string())
-        .collect()
+/// The crates and rooms of a page's tables.
+fn mapped(page: &str) -> BTreeSet<String> {
+    let rows = page.lines().filter_map(|l| l.strip_prefix("| `"));
+    let names = rows.filter_map(|l| l.split('`').next());
+    let names = names.map(|n| n.trim_end_matches(".rs").to_string());
+    let few = |n: &String| n.matches('/').count() == 1;
+    let folders = |n: &String| n.starts_with("src/") || n.starts_with("crates/");
+    names.filter(few).filter(folders).collect()
 }
 
 #[test]
-fn the_map_has_every_room_in_its_place() {
+fn the_map_has_every_crate_and_room() {
     let rooms = rooms();
-    assert!(rooms.len() > 20, "{rooms:?}");
-    assert_eq!(mapped(&read("docs/architecture.md")), rooms);
+    assert!(rooms.len() > 18, "{rooms:?}");
+    let mapped = mapped(&read("docs/architecture.md"));
+    let missing: Vec<_> = rooms.difference(&mapped).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 /// A page and a comment of a few lines, each with something that is not there.
@@ -364,9 +374,11 @@ fn what_is_dead_is_found() {
         named(page),
         [("find".to_string(), "src/fem/map.rs".to_string())]
     );
-    let map =
-        "text\n| room | what |\n| `src/fem` | a |\n| `src/main.rs` | b |\n\n| `src/other` | c |\n";
-    assert_eq!(mapped(map), ["fem", "main"]);
+    let map = "text\n| room | what |\n| `crates/fem` | a |\n| `src/solver.rs` | b |\n\n| `src/a/b.rs` | c |\n";
+    assert_eq!(
+        mapped(map),
+        ["crates/fem", "src/solver"].map(String::from).into()
+    );
 }
 
 /// A page and a source, each with long lines that may be and one that may not.

@@ -2,12 +2,12 @@
 //! manual pages are there.
 
 use super::coordinates::Coordinates;
-use super::handle::{alone, array, list, not_null, starts, together, Handle};
+use super::handle::{alone, array, lent, list, not_null, starts, together, Handle};
 use super::stack::Given;
-use crate::error::Fault;
-use crate::linalg::csr::Csr;
-use crate::petsc::{raw, Attached, Mat};
 use crate::Result;
+use base::linalg::csr::Csr;
+use base::Fault;
+use petsc::{raw, Attached};
 use std::ffi::c_int;
 
 #[no_mangle]
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn FetiFetiUpdateMatrices(
             .agree(array(matrices, n, "the list of matrices"))?;
         let one = |a: &raw::Mat| match a.is_null() {
             true => Ok(None),
-            false => Mat::share(*a, &o.session).map(Some),
+            false => lent(*a, &o.session).map(Some),
         };
         let list = list.iter().map(one).collect::<Result<Vec<_>>>()?;
         o.update_matrices(&list)
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn FetiFetiUpdateMatrices(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) -> c_int {
     together(ff, c"FetiFetiSetMatIS", |o| {
-        o.set_matis(&Mat::share(not_null(a, "Mat")?, &o.session)?, body)
+        o.set_matis(&lent(not_null(a, "Mat")?, &o.session)?, body)
     })
 }
 
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
     body: c_int,
 ) -> c_int {
     together(ff, c"FetiFetiAddMatIS", |o| {
-        let a = Mat::share(not_null(a, "Mat")?, &o.session)?;
+        let a = lent(not_null(a, "Mat")?, &o.session)?;
         match numbers.is_null() {
             true => o.stack_matis(&a, body),
             false => o.add_matis(&a, &list(o, numbers)?, body),
@@ -155,7 +155,8 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNullSpace) -> c_int {
     together(ff, c"FetiFetiSetNearNullSpace", |o| {
-        o.near = Attached::of(space, &o.session)?;
+        // SAFETY: the host hands over NULL or a live null space (fetifeti.h).
+        o.near = unsafe { Attached::of_host(space, &o.session) }?;
         o.changed.whole = true;
         Ok(())
     })

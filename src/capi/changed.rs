@@ -1,7 +1,7 @@
 //! What a host has changed since the last set-up.
 
-use crate::parallel::exchange::max_all;
-use crate::petsc::Session;
+use parallel::exchange::max_all;
+use petsc::Session;
 
 /// What has changed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,13 +1,13 @@
 //! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal unknowns, contact; their manual pages
 //! are there.
 
-use super::handle::{alone, array, list, not_null, starts, together, Handle};
+use super::handle::{alone, array, lent, list, not_null, starts, together, Handle};
 use super::numbering::Numbering;
 use super::object::Object;
 use super::rows::{pairs, row_kind, Origin, Row, Side};
-use crate::error::Fault;
-use crate::petsc::{raw, Vec as PetscVec};
 use crate::Result;
+use base::Fault;
+use petsc::raw;
 use std::ffi::c_int;
 
 #[no_mangle]
@@ -23,7 +23,7 @@ pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
         o.held = held;
         o.held_values = match values.is_null() {
             true => None,
-            false => Some(PetscVec::share(values, &o.session)?),
+            false => Some(lent(values, &o.session)?),
         };
         Ok(())
     })

@@ -1,8 +1,8 @@
 //! Rigid body motions from the places of the nodes.
 
-use crate::error::Fault;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use base::Fault;
+use petsc::Vec as PetscVec;
 
 /// Positions of nodes.
 pub struct Coordinates {

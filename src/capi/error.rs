@@ -1,9 +1,9 @@
 //! Rust errors as C sees them: a status, and a message on request.
 
-use crate::error::Fault;
-use crate::petsc::raw::{self, caught, settle};
-use crate::petsc::Session;
 use crate::{Error, Result};
+use base::Fault;
+use petsc::raw::{self, caught, settle};
+use petsc::Session;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, CStr, CString};
 

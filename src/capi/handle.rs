@@ -2,9 +2,9 @@
 
 use super::error::{classified, raise};
 use super::object::Object;
-use crate::error::Fault;
-use crate::petsc::{raw, Is, Session};
 use crate::Result;
+use base::Fault;
+use petsc::{raw, Session};
 use std::ffi::{c_int, CStr};
 
 /// The object that a `FetiFeti` points to.
@@ -16,7 +16,7 @@ pub struct Held {
 
 impl Held {
     /// An object on the ranks of `comm`.
-    pub(super) fn new(comm: raw::MPI_Comm, session: Session) -> Held {
+    pub fn new(comm: raw::MPI_Comm, session: Session) -> Held {
         Held {
             magic: MAGIC,
             comm,
@@ -120,9 +120,15 @@ pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
 }
 
 /// The numbers of an index set; empty for NULL.
-pub(super) fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
+pub fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
     match is.is_null() {
         true => Ok(Vec::new()),
-        false => Is::share(is, &o.session)?.indices(),
+        false => lent(is, &o.session)?.indices(),
     }
+}
+
+/// A reference to an object that the host lends for the time of the call, as fetifeti.h says.
+pub(super) fn lent<T>(raw: *mut T, session: &Session) -> Result<petsc::Handle<T>> {
+    // SAFETY: the host hands over a live object of this class.
+    unsafe { petsc::Handle::of_host(raw, session) }
 }

@@ -1,12 +1,12 @@
 //! The functions of `wrappers/fetifeti.h` that create, set up, use and destroy a solver; their manual pages are there.
 
 use super::error::{classified, raise};
-use super::handle::{alone, destroy, not_null, put, together, Handle, Held};
+use super::handle::{alone, destroy, lent, not_null, put, together, Handle, Held};
 use super::monitor::{Function, Monitor};
 use super::object::Object;
-use crate::error::Fault;
-use crate::petsc::{raw, Session, Vec as PetscVec};
 use crate::Result;
+use base::Fault;
+use petsc::{raw, Session};
 use std::ffi::{c_char, c_int, c_void, CStr};
 
 #[no_mangle]
@@ -97,7 +97,8 @@ fn show(o: &Object, viewer: raw::PetscViewer) -> Result<()> {
         o.print();
         return Ok(());
     }
-    raw::show(viewer, &o.text())
+    // SAFETY: the host hands over a live viewer (fetifeti.h).
+    unsafe { raw::show(viewer, &o.text()) }
 }
 
 #[no_mangle]
@@ -108,8 +109,8 @@ pub unsafe extern "C" fn FetiFetiSetUp(ff: Handle) -> c_int {
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> c_int {
     together(ff, c"FetiFetiSolve", |o| {
-        let b = PetscVec::share(not_null(b, "right-hand side")?, &o.session)?;
-        let x = PetscVec::share(not_null(x, "solution")?, &o.session)?;
+        let b = lent(not_null(b, "right-hand side")?, &o.session)?;
+        let x = lent(not_null(x, "solution")?, &o.session)?;
         o.solve(&b, &x)
     })
 }

@@ -27,13 +27,12 @@ mod surface;
 mod surfaces;
 mod update;
 
-use crate::petsc::raw;
+use petsc::raw;
 use std::ffi::{c_char, c_int};
 
 extern "C" {
     fn ff_plugin_register(avx2: c_int) -> c_int;
     fn ff_processor(avx2: c_int) -> c_int;
-    #[cfg(feature = "cli")]
     fn ff_processor_suits() -> c_int;
     fn ff_plugin_set_body(ksp: raw::KSP, body: c_int) -> c_int;
     fn ff_plugin_set_body_is(ksp: raw::KSP, bodies: raw::IS) -> c_int;
@@ -52,8 +51,7 @@ fn processor() -> c_int {
 }
 
 /// Whether this processor has all instructions of this build.
-#[cfg(feature = "cli")]
-pub(crate) fn suits() -> bool {
+pub fn suits() -> bool {
     // SAFETY: without arguments.
     AVX2 == 0 || unsafe { ff_processor_suits() } != 0
 }

@@ -1,8 +1,8 @@
 //! A function of the host that is called after each step of the contact loop.
 
 use crate::contact::Step;
-use crate::petsc::Session;
 use crate::{Error, Result};
+use petsc::Session;
 use std::ffi::{c_int, c_void};
 
 /// FetiFetiContactStep of `wrappers/fetifeti.h`.

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::surface::Surface;
-use crate::error::Fault;
-use crate::mortar::{self, reach, Sample, Side};
-use crate::parallel::exchange::gather_all;
-use crate::petsc::Session;
 use crate::substructures::RowKind;
 use crate::Result;
+use base::Fault;
+use elements::mortar::{self, reach, Sample, Side};
+use parallel::exchange::gather_all;
+use petsc::Session;
 
 /// What one rank gives for a pair of surfaces.
 pub struct GivenMortar<'a> {

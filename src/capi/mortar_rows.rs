@@ -8,12 +8,12 @@ use super::object::Object;
 use super::rows::Origin;
 use super::surface::Surface;
 use crate::embed::{GivenResults, GivenRow};
-use crate::error::Fault;
-use crate::linalg::sorted::distinct;
-use crate::mortar::{distance, rows, Row};
-use crate::parallel::exchange::gather_all;
 use crate::substructures::RowKind;
 use crate::Result;
+use base::linalg::sorted::distinct;
+use base::Fault;
+use elements::mortar::{distance, rows, Row};
+use parallel::exchange::gather_all;
 
 /// Where a row belongs, on the rank that gives it.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,9 @@
 //! Vectors of the host in the layout of all unknowns: plain, or nested with a part for each matrix.
 
 use super::stack::{fits, Stack};
-use crate::error::Fault;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use base::Fault;
+use petsc::{Session, Vec as PetscVec};
 
 /// A vector of the host with the right layout.
 pub struct Given {

@@ -11,12 +11,12 @@ use super::stack::{fits, Given, LocalMatrix, Stack, Told};
 use super::surface::Surface;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Outcome, Torn, Work};
-use crate::error::Fault;
-use crate::parallel::exchange::{exchange_words, highest};
-use crate::parallel::halo::Halo;
-use crate::parallel::owners::Owners;
-use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
+use base::Fault;
+use parallel::exchange::{exchange_words, highest};
+use parallel::halo::Halo;
+use parallel::owners::Owners;
+use petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// The data of a `FetiFeti`.

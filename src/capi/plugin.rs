@@ -1,11 +1,12 @@
 //! The functions behind KSPFETIFETI (wrappers/kspfetifeti.h).
 
 use super::error::{remark, status, UNFIT};
+use super::handle::lent;
 use crate::embed::{Embedded, Local, SetUp, Torn, Work};
 use crate::feti::krylov::solve::Look;
-use crate::petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use crate::status::Status;
 use crate::{Error, MethodSettings, Result};
+use petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
@@ -83,7 +84,7 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         // SAFETY: by the caller; the KSP that owns the solver keeps the communicator.
         let session = unsafe { Session::borrowed(comm) }?;
         *at_work = Some(session.clone());
-        let a = Mat::share(a, &session)?;
+        let a = lent(a, &session)?;
         // SAFETY: by the caller.
         let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
         // SAFETY: by the caller; NULL takes its place.
@@ -154,7 +155,7 @@ fn whole(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
         torn.named = Some(numbers(
             session,
             &torn.layout,
-            &Is::share(wishes.bodies, session)?,
+            &lent(wishes.bodies, session)?,
         )?);
     }
     Embedded::new(session, &torn, bodies, settings)
@@ -199,12 +200,9 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         // SAFETY: by the caller.
         let (solver, wishes) = unsafe { (&(*solver.cast::<Solver>()).embedded, &*wishes) };
         *at_work = Some(solver.session().clone());
-        let (b, x) = (
-            PetscVec::share(b, solver.session())?,
-            PetscVec::share(x, solver.session())?,
-        );
+        let (b, x) = (lent(b, solver.session())?, lent(x, solver.session())?);
         forward(solver, wishes)?;
-        let (a, r) = (Mat::share(a, solver.session())?, b.duplicate()?);
+        let (a, r) = (lent(a, solver.session())?, b.duplicate()?);
         let best = Cell::new(f64::INFINITY);
         let mut outcome = solver.solve(&b, &x, &|x, look| {
             if wishes.goal < 0.0 {
@@ -289,7 +287,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
     status("KSPBuildSolution_FETIFETI", |_| {
         // SAFETY: by the caller.
         let solver = unsafe { &(*solver.cast::<Solver>()).embedded };
-        let x = PetscVec::share(x, solver.session())?;
+        let x = lent(x, solver.session())?;
         // SAFETY: by the caller.
         unsafe { *there = solver.current(&x)?.into() };
         Ok(())

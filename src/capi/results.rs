@@ -1,8 +1,8 @@
 //! The functions of `wrappers/fetifeti.h` that return the results of a solve.
 
 use super::handle::{alone, put, Handle};
-use crate::error::Fault;
-use crate::petsc::raw;
+use base::Fault;
+use petsc::raw;
 use std::ffi::c_int;
 
 #[no_mangle]

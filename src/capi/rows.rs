@@ -3,9 +3,9 @@
 use super::numbering::Numbering;
 use super::object::Object;
 use crate::embed::GivenRow;
-use crate::error::Fault;
 use crate::substructures::RowKind;
 use crate::Result;
+use base::Fault;
 
 /// The function that gave a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

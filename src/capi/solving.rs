@@ -4,9 +4,9 @@ use super::nested::Given;
 use super::object::Object;
 use crate::contact::{State, Step};
 use crate::embed::{Embedded, Outcome};
-use crate::error::Fault;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use base::Fault;
+use petsc::Vec as PetscVec;
 
 impl Object {
     /// x ← the solution for b. Collective.

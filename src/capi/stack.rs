@@ -8,11 +8,11 @@ use std::borrow::Cow;
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
 use crate::embed::{Local, Piece};
-use crate::error::Fault;
-use crate::linalg::csr::Csr;
-use crate::parallel::exchange::gather_all;
-use crate::petsc::{Mat, Session, Vec as PetscVec};
 use crate::Result;
+use base::linalg::csr::Csr;
+use base::Fault;
+use parallel::exchange::gather_all;
+use petsc::{Mat, Session, Vec as PetscVec};
 
 /// A subdomain matrix from the host.
 pub struct Given {

@@ -6,13 +6,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::numbering::Numbering;
-use crate::error::Fault;
-use crate::linalg::sorted::distinct;
-use crate::linalg::vec3::{minus, norm};
-use crate::mortar::{one_way, Face, Side};
-use crate::parallel::exchange::gather_all;
-use crate::petsc::Session;
 use crate::Result;
+use base::linalg::sorted::distinct;
+use base::linalg::vec3::{minus, norm};
+use base::Fault;
+use elements::mortar::{one_way, Face, Side};
+use parallel::exchange::gather_all;
+use petsc::Session;
 
 /// Places of one node that differ by more than this part of the coordinates are different places.
 const SAME: f64 = 1e-9;

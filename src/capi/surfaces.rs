@@ -4,8 +4,8 @@ use super::handle::{alone, array, put, starts, together, Handle};
 use super::mortar::{GivenMortar, Surfaces};
 use super::rows::row_kind;
 use super::surface::{GivenSurface, Surface};
-use crate::error::Fault;
 use crate::substructures::RowKind;
+use base::Fault;
 use std::ffi::c_int;
 
 /// PETSC_INFINITY.

@@ -3,10 +3,10 @@
 use super::object::Object;
 use super::stack::Given;
 use crate::embed::torn::unassembled;
-use crate::error::Fault;
-use crate::linalg::csr::Csr;
-use crate::petsc::Mat;
 use crate::Result;
+use base::linalg::csr::Csr;
+use base::Fault;
+use petsc::Mat;
 
 impl Object {
     /// The entries of matrices have changed: `matrices` has those that were added, in their order; `None` for one that

@@ -5,9 +5,9 @@ use super::damping::Point;
 use super::judge;
 use super::newton::{Search, MORE, REDUCTION, STIFFER, STIFFNESS};
 use crate::feti::krylov::iterate::Run;
-use crate::petsc::{ConvergedReason, Stopped};
 use crate::status::Status;
 use crate::Result;
+use petsc::{ConvergedReason, Stopped};
 
 /// A residual below this part of the largest so far is rounding.
 const ROUNDING: f64 = 1e-11;

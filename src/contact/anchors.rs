@@ -24,10 +24,10 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::known::Known;
 use crate::feti::projector::rows::Rows;
 use crate::feti::LinearMethod;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::total;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use base::linalg::sorted::distinct;
+use parallel::exchange::total;
+use petsc::Vec as PetscVec;
 
 /// Factor by which anchors become softer from one minimisation to the next.
 const SOFTER: f64 = 10.0;

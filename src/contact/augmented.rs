@@ -17,9 +17,9 @@ use super::balance::Balance;
 use super::mprgp::Bounded;
 use crate::feti::projector::rows::Rows;
 use crate::feti::LinearMethod;
-use crate::parallel::exchange::total;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use parallel::exchange::total;
+use petsc::Vec as PetscVec;
 
 /// Number of steps of the power method. The norm is needed to a few per cent only, and ‖A‖ is one of the outer
 /// eigenvalues.

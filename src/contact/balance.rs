@@ -10,7 +10,7 @@ use crate::feti::projector::known::Known;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::feti::projector::refined::Refined;
 use crate::feti::projector::rows::Rows;
-use crate::linalg::semidefinite::Semidefinite;
+use base::linalg::semidefinite::Semidefinite;
 
 /// G (this rank's rows) and the factor of N = GᵀG, r × r, with dependent columns left out.
 pub struct Balance {

@@ -16,7 +16,7 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::anchors::Anchors;
-use crate::parallel::exchange::sum_all;
+use parallel::exchange::sum_all;
 
 /// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
 /// not.

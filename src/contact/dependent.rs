@@ -10,7 +10,7 @@
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::springs::forceless;
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// cᵀN counts as zero below this, relative to its terms: rounding of given gaps.
 const LEVEL: f64 = 1e-12;

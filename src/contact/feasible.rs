@@ -6,11 +6,11 @@
 
 use crate::feti::jump::blocks::Block;
 use crate::feti::operators::dual::Dual;
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
-use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
+use base::linalg::dense::Dense;
+use base::linalg::nnls::nnls;
+use base::linalg::sorted::distinct;
 
 /// A block is contradictory if NNLS comes this close to (Bᵀλ, cᵀλ) = (0, −1).
 const CONTRADICTION: f64 = 1e-8;

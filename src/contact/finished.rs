@@ -4,10 +4,10 @@ use super::newton::Search;
 use super::state::Step;
 use crate::feti::krylov::iterate::Run;
 use crate::feti::LinearSolution;
-use crate::parallel::exchange::highest;
-use crate::petsc::Stopped;
 use crate::status::Status;
 use crate::Result;
+use parallel::exchange::highest;
+use petsc::Stopped;
 
 impl Search<'_> {
     /// Whether the springs give way by no more than the tolerance, and their forces are those of the displacements to

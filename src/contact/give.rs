@@ -9,8 +9,8 @@
 
 use super::balance::Balance;
 use crate::feti::LinearMethod;
-use crate::parallel::exchange::total;
 use crate::Result;
+use parallel::exchange::total;
 
 /// Number of vectors of signs. The mean is then known to a factor of two, which is what the springs need.
 const SAMPLES: u64 = 4;

@@ -6,9 +6,9 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{max_all, total};
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
+use parallel::exchange::{max_all, total};
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
 /// depends on three others inherits the sum of their jumps.

@@ -12,7 +12,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::rigid::{self, First};
+use super::rigid::First;
+use crate::contact::rigid;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
@@ -20,12 +21,12 @@ use crate::feti::projector::gram::FEW;
 use crate::feti::projector::held::{moving, weakness};
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::rows::Rows;
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
+use base::linalg::dense::Dense;
+use base::linalg::nnls::nnls;
+use base::linalg::sorted::distinct;
+use parallel::exchange::gather_all;
 
 /// The iteration accepts the load as balanced if the rest of e is below this, relative to the loads.
 pub const NEARLY: f64 = 1e-7;

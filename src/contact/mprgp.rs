@@ -7,8 +7,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::parallel::exchange::{lowest, total};
 use crate::Result;
+use parallel::exchange::{lowest, total};
 
 /// Γ: a face is left if the chopped gradient is larger than this many times the free gradient.
 const GAMMA: f64 = 1.0;

@@ -26,9 +26,9 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::krylov::target::target;
 use crate::feti::LinearMethod;
-use crate::parallel::exchange::total;
 use crate::status::Status;
 use crate::Result;
+use parallel::exchange::total;
 
 /// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes, in
 /// compact bodies. Much softer springs take more minimisations, much stiffer ones more steps in each.

@@ -6,9 +6,9 @@ use mpi::topology::SimpleCommunicator;
 use super::judge;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Iterate;
-use crate::parallel::exchange::{any, max_all};
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use parallel::exchange::{any, max_all};
+use petsc::Vec as PetscVec;
 
 /// The multipliers of the inequalities that hold, at the last look.
 pub(super) struct Pulling<'a> {

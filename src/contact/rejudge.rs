@@ -9,8 +9,8 @@ use super::state::State;
 use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
-use crate::parallel::exchange::{any, max_all};
 use crate::Result;
+use parallel::exchange::{any, max_all};
 
 /// A row is on the wrong side if it pulls, or is violated, by more than this many tolerances, relative to the largest
 /// multiplier or displacement. The energy changes by the square of the pull.

@@ -13,11 +13,11 @@ use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::motion::Motion;
-use crate::linalg::sorted::distinct;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
 use crate::Result;
+use base::linalg::sorted::distinct;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::gather_all;
 
 /// Work of a row on a motion below this, relative to the largest that it could be, is none.
 const AGAINST: f64 = 1e-8;

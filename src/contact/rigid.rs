@@ -22,7 +22,7 @@ use crate::feti::projector::gram::Gram;
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::feti::projector::rows::Rows;
-use crate::parallel::exchange::{any, sum_all};
+use parallel::exchange::{any, sum_all};
 
 /// The last ε. Rounding of the factor is 1e-16, the softest motions of a thousand bodies in a row are 1e-6.
 const WEAK: f64 = 1e-8;

@@ -1,7 +1,7 @@
 //! Options of the contact loop (prefix `fetifeti_contact_`).
 
-use crate::petsc::{named, Options};
 use crate::{Error, Result};
+use petsc::{named, Options};
 
 /// The method of the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

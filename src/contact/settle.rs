@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::gather_all;
+use base::linalg::dense::Dense;
+use base::linalg::nnls::nnls;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::gather_all;
 
 /// A row a z ≤ b: a as (motion, coefficient as bits), scaled to a largest coefficient of 1.
 type Row = Vec<(u64, u64)>;

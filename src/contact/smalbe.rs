@@ -25,9 +25,9 @@ use super::state::{changes, Observer, Progress, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
-use crate::parallel::exchange::{any, total};
 use crate::status::Status;
 use crate::Result;
+use parallel::exchange::{any, total};
 
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
 const ETA: f64 = 0.1;

@@ -1,14 +1,13 @@
 //! The state of the contact loop, and a record of its steps.
 
 use mpi::topology::SimpleCommunicator;
-#[cfg(feature = "cli")]
 use serde::{Deserialize, Serialize};
 
 use super::settings::ContactType;
 use crate::feti::jump::operator::Jump;
 use crate::feti::Spectrum;
-use crate::parallel::exchange::sum_all;
 use crate::Result;
+use parallel::exchange::sum_all;
 
 /// Record of one step of the outer loop.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +38,7 @@ pub struct Step {
 }
 
 /// The state of the outer loop, sufficient to continue it. Vectors are this rank's part.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Multipliers of the owned rows.
     pub lambda: Vec<f64>,
@@ -100,8 +98,7 @@ pub(super) fn changes(comm: &SimpleCommunicator, before: &[bool], now: &[bool]) 
 }
 
 /// The progress of the active-set method, measured by the number of rows on the wrong side.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Progress {
     /// The smallest number of wrong rows so far; `None` before the first step.
     fewest: Option<usize>,

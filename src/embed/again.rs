@@ -10,11 +10,11 @@ use super::solver::{Embedded, GivenResults, Reached};
 use super::torn::GivenRow;
 use super::touched::Here;
 use crate::feti::Numbers;
-use crate::linalg::csr::Csr;
-use crate::parallel::exchange::any;
-use crate::petsc::Mat;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 use crate::{Error, FetiFeti, Result};
+use base::linalg::csr::Csr;
+use parallel::exchange::any;
+use petsc::Mat;
 
 /// Rows in the place of those that a solver has.
 struct Replaced {

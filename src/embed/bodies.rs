@@ -4,12 +4,12 @@
 use super::hold::Bond;
 use super::parts::Part;
 use super::sharing::Sharers;
-use crate::linalg::sorted::distinct;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::{any, exchange_words, offsets};
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
+use base::linalg::sorted::distinct;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::{any, exchange_words, offsets};
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 

@@ -9,10 +9,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::parallel::exchange::{any, exchange_words};
-use crate::petsc::Session;
 use crate::substructures::EntityKind;
 use mpi::traits::Communicator;
+use parallel::exchange::{any, exchange_words};
+use petsc::Session;
 
 /// A connected piece of interface, as one of its subdomains sees it.
 #[derive(Debug, Clone)]

@@ -9,10 +9,10 @@ use super::known_dofs::KnownDofs;
 use super::placed::Placed;
 use super::torn::GivenRow;
 use super::touched::{Here, Touched};
-use crate::parallel::exchange::{any, exchange_words, total};
-use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
 use crate::{Error, Result};
+use parallel::exchange::{any, exchange_words, total};
+use petsc::Session;
 
 /// A row on the rank that takes it.
 struct Taken {

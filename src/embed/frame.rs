@@ -14,8 +14,8 @@ use super::motions::CANCELS;
 use super::nullspace::cancels;
 use super::parts::{Part, Place, Rows, SYMMETRIC};
 use super::sharing::Sharers;
-use crate::linalg::csr::Csr;
-use crate::petsc::Vec as PetscVec;
+use base::linalg::csr::Csr;
+use petsc::Vec as PetscVec;
 
 /// The frame of a torn operator on this rank.
 pub struct Frame {

@@ -15,9 +15,9 @@ use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::Primal;
-use crate::parallel::exchange::exchange_words;
-use crate::petsc::Session;
 use crate::substructures::EntityKind;
+use parallel::exchange::exchange_words;
+use petsc::Session;
 
 /// Two subdomains that have dofs in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! The host's motions without energy: restricted to subdomains, and an orthogonal basis for every body.
 
 use super::parts::Part;
-use crate::parallel::exchange::{exchange_words, highest};
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use parallel::exchange::{exchange_words, highest};
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 use std::collections::HashMap;
 
 /// A vector is linearly dependent if orthogonalisation shortens it to less than this fraction.

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::exchange_words;
-use crate::petsc::Session;
+use base::linalg::sorted::distinct;
+use parallel::exchange::exchange_words;
+use petsc::Session;
 
 /// The known dofs in the rows that this rank takes.
 pub struct KnownDofs {

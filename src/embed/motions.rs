@@ -16,9 +16,9 @@ use super::nullspace::{annihilates, kernel, Indefinite};
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::parallel::exchange::{any, exchange_words};
-use crate::petsc::Session;
 use crate::{Error, Result};
+use parallel::exchange::{any, exchange_words};
+use petsc::Session;
 
 /// A row annihilates a vector of the host if its terms cancel to less than this fraction: vectors have errors of their
 /// own, such as those of coordinates in single precision.

@@ -13,10 +13,10 @@
 use std::sync::Arc;
 
 use super::kernels::{orthogonal, Columns};
-use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use cholesky::multifrontal::{PartialCholesky, SingularInterior};
+use cholesky::symbolic::Symbolic;
 
 /// A pivot of K_II below this fraction of its diagonal entry adds the dof to F: S would lose as many digits. One dof
 /// too many does no harm. Motions without energy leave 1e-16 or so, coefficients that jump by 1e6 leave 1e-6.

@@ -4,10 +4,10 @@
 //! first rank partitions it: the groups do not depend on the distribution of subdomains over ranks.
 
 use super::hold::Bond;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::{gather_all, sum_all};
-use crate::petsc::{partition as by_petsc, Options, Session};
 use crate::Result;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::{gather_all, sum_all};
+use petsc::{partition as by_petsc, Options, Session};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Partitions that this process has looked for as the first rank of its communicator.

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::pieces::Piece;
 use super::states::State;
 use super::torn::Torn;
-use crate::linalg::csr::Csr;
 use crate::{Error, Result};
+use base::linalg::csr::Csr;
 
 /// Largest difference of entries (i, j) and (j, i), relative to the diagonal.
 pub const SYMMETRIC: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Local matrices as the host stores them, and the subdomain matrices extracted from them.
 
-use crate::linalg::csr::Csr;
-use crate::linalg::sorted::distinct;
+use base::linalg::csr::Csr;
+use base::linalg::sorted::distinct;
 use std::collections::HashMap;
 
 /// One subdomain matrix of the host.

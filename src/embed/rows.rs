@@ -4,10 +4,10 @@ use super::bodies::Bodies;
 use super::contact::Contact;
 use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::exchange_words;
-use crate::petsc::Session;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
+use base::linalg::sorted::distinct;
+use parallel::exchange::exchange_words;
+use petsc::Session;
 
 /// The rows u_a − u_b = 0 for every pair of bodies a < b at every dof. The rank of the dof's lowest subdomain provides
 /// them, or the rank that holds the host's rows with this dof. Collective.

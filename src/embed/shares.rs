@@ -6,9 +6,9 @@ use super::frame::Numbers;
 use super::parts::Part;
 use super::states::State;
 use super::torn::Torn;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 
 /// A subdomain's share in global vectors.
 struct Share {

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use super::parts::Part;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, offsets};
-use crate::parallel::owners::Owners;
-use crate::petsc::Session;
+use base::linalg::sorted::distinct;
 use mpi::traits::Communicator;
+use parallel::exchange::{exchange_words, offsets};
+use parallel::owners::Owners;
+use petsc::Session;
 
 /// The subdomains of all ranks, and for each dof of this rank the subdomains that hold it.
 pub struct Sharers {

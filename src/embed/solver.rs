@@ -3,7 +3,7 @@
 use std::cell::{Ref, RefCell};
 use std::collections::HashSet;
 
-use super::bodies::{self, by_most_dofs, named_groups, Bodies};
+use super::bodies::{by_most_dofs, named_groups, Bodies};
 use super::classes::{classes, in_space};
 use super::contact::Contact;
 use super::frame::Frame;
@@ -20,15 +20,16 @@ use super::subdomains::{subdomain, Known};
 use super::torn::{GivenRow, Torn};
 use super::touched::Here;
 use crate::contact::{Observer, State as ContactState};
+use crate::embed::bodies;
 use crate::feti::krylov::solve::Look;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
-use crate::parallel::exchange::total;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::status::Status;
 use crate::substructures::{RowState, SolvedRow, Substructures};
 use crate::{Error, FetiFeti, Result, Solution};
+use parallel::exchange::total;
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 
 /// The result of a solve.
 #[derive(Debug, Clone)]

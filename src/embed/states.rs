@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use super::torn::Torn;
-use crate::parallel::exchange::exchange_words;
-use crate::petsc::Session;
 use mpi::traits::Communicator;
+use parallel::exchange::exchange_words;
+use petsc::Session;
 
 /// The state of a global dof.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,11 @@
 //! The input of a host program: subdomain matrices, not yet grouped or classified.
 
 use super::pieces::{torn_from, Piece};
-use crate::linalg::sorted::distinct;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
 use crate::substructures::RowKind;
 use crate::{Error, Result};
+use base::linalg::sorted::distinct;
+use parallel::halo::Halo;
+use petsc::{Attached, Mat, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// A row of the host: Σ coefficient · u(global dof) = or ≤ gap.

@@ -7,13 +7,13 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::Part;
 use super::torn::GivenRow;
-use crate::linalg::sorted::distinct;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::{any, exchange_words};
-use crate::parallel::halo::Halo;
-use crate::parallel::owners::Owners;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use base::linalg::sorted::distinct;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::{any, exchange_words};
+use parallel::halo::Halo;
+use parallel::owners::Owners;
+use petsc::{Session, Vec as PetscVec};
 
 /// What this rank has of the host's problem.
 pub struct Here<'a> {

@@ -1,11 +1,11 @@
 //! What set-ups have done so far, counted over all ranks: how much of it was repeated.
 
 use super::partition::partitions;
-use crate::cholesky::symbolic::analyses;
 use crate::feti::subdomain::problem::factorisations;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::Session;
 use crate::Result;
+use cholesky::symbolic::analyses;
+use parallel::exchange::sum_all;
+use petsc::Session;
 
 /// The kind of a set-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

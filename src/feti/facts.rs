@@ -10,7 +10,7 @@ use super::operators::dual::Dual;
 use super::settings::Scaling;
 use super::subdomain::problem::LocalProblem;
 use super::subdomain::scaled::Scaled;
-use crate::parallel::exchange::sum_all;
+use parallel::exchange::sum_all;
 
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]

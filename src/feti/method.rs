@@ -12,11 +12,11 @@ use super::operators::dual::Dual;
 use super::settings::MethodSettings;
 use super::setup::Made;
 use super::subdomain::kept::Kept;
-use crate::cholesky::interior::Analysed;
-use crate::parallel::exchange::any;
-use crate::petsc::{Ksp, Session};
 use crate::substructures::{InterfaceRow, Substructures};
 use crate::Result;
+use cholesky::interior::Analysed;
+use parallel::exchange::any;
+use petsc::{Ksp, Session};
 
 /// The operators, the Krylov method and facts about the problem.
 pub struct LinearMethod {
@@ -50,6 +50,21 @@ pub struct Numbers {
 }
 
 impl LinearMethod {
+    /// The session that it works in.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The substructures that it was set up for.
+    pub fn problem(&self) -> &Substructures {
+        &self.problem
+    }
+
+    /// The dual problem as the Krylov method works on it.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
     /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows, which are in the
     /// order in which this rank provides them. Nothing is factored again.
     ///

@@ -2,29 +2,29 @@
 //! nothing of contact: its caller says which rows hold.
 
 pub(crate) mod adaptive;
-pub(crate) mod cost;
-pub(crate) mod deflation;
+pub mod cost;
+pub mod deflation;
 pub(crate) mod facts;
-pub(crate) mod interface;
-pub(crate) mod jump;
+pub mod interface;
+pub mod jump;
 pub(crate) mod krylov;
 pub(crate) mod lifting;
 pub(crate) mod method;
 pub(crate) mod operators;
 pub(crate) mod primal;
-pub(crate) mod projector;
-pub(crate) mod settings;
+pub mod projector;
+pub mod settings;
 mod setup;
 pub(crate) mod spectrum;
-pub(crate) mod subdomain;
+pub mod subdomain;
 
-pub use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
+pub use cholesky::interior::{LocalSolver, Ordering, Solver};
 pub use facts::Facts;
 pub use krylov::certificate::Kkt;
 pub use krylov::certified::{Certified, Uncertified, Verdict};
 pub(crate) use krylov::recovery::LinearSolution;
-pub use krylov::tally::Communication;
-pub(crate) use method::LinearMethod;
+pub use krylov::tally::{Communication, PerIteration};
+pub use method::LinearMethod;
 pub use method::Numbers;
 pub use projector::freedom::FreeMotion;
 pub use settings::{

@@ -1,10 +1,10 @@
 //! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use super::jump::coupled::MANY;
-use crate::cholesky::interior::LocalSolver;
-use crate::petsc::{named, Options, Session};
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
+use cholesky::interior::LocalSolver;
+use petsc::{named, Options, Session};
 
 /// The preconditioner of the dual problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -23,7 +23,7 @@ use super::operators::dual::Dual;
 use super::operators::preconditioner::Preconditioner;
 use super::operators::stiffness::Stiffness;
 use super::primal::coarse::PrimalProblem;
-use super::primal::refinement::{self, Refinement};
+use super::primal::refinement::Refinement;
 use super::primal::slack;
 use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
@@ -31,13 +31,14 @@ use super::settings::{MethodSettings, PcType, Scaling};
 use super::subdomain::factor::{factor, no_factor, Factored};
 use super::subdomain::kept::Kept;
 use super::subdomain::scaled::Scaled;
-use crate::cholesky::interior::Analysed;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::halo::Halo;
-use crate::parallel::team::Team;
-use crate::petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
+use crate::feti::primal::refinement;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
+use cholesky::interior::Analysed;
+use parallel::clock::{self, Phase};
+use parallel::halo::Halo;
+use parallel::team::Team;
+use petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
 
 /// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;

@@ -7,8 +7,8 @@
 
 use super::FetiFeti;
 use crate::contact::{self, ContactType, State};
-use crate::petsc::Options;
 use crate::{Result, Solution};
+use petsc::Options;
 
 /// The algebraic error may be this part of the discretisation error. Both together are then at most 10 % above the
 /// discretisation error, and mostly half a per cent: they are nearly orthogonal in the energy.

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 
 use super::Subdomain;
-use crate::error::{Error, Result};
-use crate::parallel::exchange::gather_all;
+use base::{Error, Result};
+use parallel::exchange::gather_all;
 
 /// The part of a subdomain in a motion of its body that has no energy and that no row sees.
 ///
@@ -82,7 +82,7 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
 }
 
 /// Takes the displacement along idle motions away. Collective.
-pub(crate) fn settle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]) {
+pub fn settle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]) {
     let place: BTreeMap<usize, usize> = local
         .iter()
         .enumerate()

@@ -3,7 +3,7 @@
 //! Scenes and MATIS matrices both become [`Substructures`]; the method does not know where the matrices come from. All
 //! data are distributed: a rank holds its own subdomains and provides its own rows.
 
-pub(crate) mod idle;
+pub mod idle;
 mod rows;
 
 pub use idle::Idle;
@@ -11,7 +11,7 @@ pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, S
 
 use std::sync::Arc;
 
-use crate::linalg::csr::Csr;
+use base::linalg::csr::Csr;
 
 /// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
 ///
@@ -80,8 +80,7 @@ pub struct Entity {
 /// press against a wall at a distance of 0.1.
 ///
 /// ```
-/// use fetifeti::substructures::BodyNode;
-/// use fetifeti::{Csr, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures};
+/// use fetifeti::{BodyNode, Csr, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures};
 ///
 /// let spring = |body: usize, k: Csr, f: Vec<f64>, dofs: Vec<u64>| Subdomain {
 ///     index: body,

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange, gather_all, Record};
+use base::linalg::sorted::distinct;
+use parallel::exchange::{exchange, gather_all, Record};
 
 /// The kind of a row: an equation, or an inequality that the contact loop may switch off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,11 +52,11 @@ pub struct BodyNode {
 /// The origin of a row, in the numbering of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RowSource {
-    /// Two bodies that meet; in a scene the index into [`Scene::interfaces`](crate::scene::Scene::interfaces).
+    /// Two bodies that meet; in a scene the index into [`Scene::interfaces`](scene::Scene::interfaces).
     Interface(usize),
-    /// A body beside a rigid obstacle; in a scene the index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
+    /// A body beside a rigid obstacle; in a scene the index into [`Scene::obstacles`](scene::Scene::obstacles).
     Obstacle(usize),
-    /// An equation between unknowns; in a scene the index into [`Scene::equations`](crate::scene::Scene::equations).
+    /// An equation between unknowns; in a scene the index into [`Scene::equations`](scene::Scene::equations).
     Equation(usize),
 }
 

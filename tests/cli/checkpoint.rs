@@ -6,13 +6,14 @@ use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
 
-use fetifeti::checkpoint::{file::read, Checkpoint};
+use fetifeti_cli::checkpoint::file::read;
+use fetifeti_cli::checkpoint::Checkpoint;
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
 
-pub const MODEL: &str = "examples/scenes/model_contact.toml";
-pub const PRESS: &str = "examples/scenes/press_ramp.toml";
+pub const MODEL: &str = "../../examples/scenes/model_contact.toml";
+pub const PRESS: &str = "../../examples/scenes/press_ramp.toml";
 
 /// Two floating bodies and cross points: four bodies in contact, the lower left one held.
 const FOUR: &str = r#"
@@ -170,7 +171,7 @@ fn bodies_around_a_point_go_on() {
 #[test]
 fn mortar_rows_go_on() {
     let scratch = Scratch::new("resume-mortar");
-    for case in fetifeti::study::hard_cases::trackers() {
+    for case in lab::study::hard_cases::trackers() {
         if case.name == "moose-10950-facets" || case.name == "flow123d-1381-crossing" {
             let tight = "[options]\nfetifeti_ksp_rtol = 1e-11\n";
             let scene = scratch.file("mortar.toml", &format!("{}{tight}", case.text));
@@ -183,8 +184,8 @@ fn mortar_rows_go_on() {
 #[test]
 fn rows_beside_a_rigid_surface_go_on() {
     let scratch = Scratch::new("resume-die");
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes/die.msh");
-    let die = std::fs::read_to_string("examples/scenes/die.toml").expect("the example");
+    let mesh = concat!(env!("FETIFETI_ROOT"), "/examples/scenes/die.msh");
+    let die = std::fs::read_to_string("../../examples/scenes/die.toml").expect("the example");
     let once = die
         .replace("[steps]\ncount = 5\n", "")
         .replace("die.msh", mesh);

@@ -101,7 +101,7 @@ fn a_checkpoint_belongs_to_its_scene() {
     let finer = changed("finer.toml", "elements = 32", "elements = 64");
     refused(&resume(&finer), 2, &["The model problem", "finer.toml"]);
     refused(&resume(PRESS), 2, &["The model problem", "A press"]);
-    let tied = "examples/scenes/model_tied.toml";
+    let tied = "../../examples/scenes/model_tied.toml";
     refused(
         &resume(tied),
         2,

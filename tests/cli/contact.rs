@@ -10,8 +10,8 @@ use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti};
 use serde_json::Value;
 
-const MODEL: &str = "examples/scenes/model_contact.toml";
-const PRESS: &str = "examples/scenes/press_ramp.toml";
+const MODEL: &str = "../../examples/scenes/model_contact.toml";
+const PRESS: &str = "../../examples/scenes/press_ramp.toml";
 
 fn list(v: &Value) -> &[Value] {
     v.as_array().unwrap_or_else(|| panic!("{v} is no list"))

@@ -2,10 +2,10 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use fetifeti::mesh::deck::{read_dat, Quantity, Table};
+use deck::{read_dat, Quantity, Table};
 use serde_json::Value;
 
-const DECK: &str = "tests/inside/mesh/deck/block.inp";
+const DECK: &str = "../../crates/deck/tests/block.inp";
 
 /// The tables in a file.
 fn tables(path: &str) -> Vec<Table> {
@@ -27,13 +27,13 @@ fn compare_along<const N: usize>(
 ) -> Value {
     let scratch = Scratch::new(&format!("deck_{name}_{ranks}"));
     let (out, json) = (scratch.path("out"), scratch.path("report.json"));
-    let deck = format!("tests/inside/mesh/deck/{name}.inp");
+    let deck = format!("../../crates/deck/tests/{name}.inp");
     let rtol = ["-fetifeti_ksp_rtol", "1e-10"];
     let files = ["solve", &deck, "--out", &out, "--json", &json];
     let run = run_fetifeti(ranks, &[&files[..], &rtol].concat());
     assert_eq!(run.code, 0, "{}", run.all());
     let ours = tables(&format!("{out}/{name}.dat"));
-    let theirs = tables(&format!("tests/inside/mesh/deck/{name}.dat"));
+    let theirs = tables(&format!("../../crates/deck/tests/{name}.dat"));
     assert_eq!(ours.len(), theirs.len());
     let moves = |t: &Table| t.quantity == Quantity::Displacement;
     let largest = |of: bool| {

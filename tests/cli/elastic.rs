@@ -68,7 +68,7 @@ fn pipes(p: f64, radii: [f64; 3], young: [f64; 2], nu: f64) -> f64 {
 #[test]
 fn pipes_press_on_each_other_as_lame_says() {
     let dir = Scratch::new("elastic-annulus");
-    let (report, csv, vtu) = solve("examples/scenes/annulus.toml", &dir, &[]);
+    let (report, csv, vtu) = solve("../../examples/scenes/annulus.toml", &dir, &[]);
     assert_eq!(report["dimension"], 2);
     assert_eq!(report["physics"], "elasticity");
     assert_eq!(report["components"], 2);
@@ -140,7 +140,7 @@ fn pipes_press_on_each_other_as_lame_says() {
 #[test]
 fn blocks_have_a_map_of_pressure_and_forces_with_directions() {
     let dir = Scratch::new("elastic-blocks");
-    let scene = "examples/scenes/blocks_3d.toml";
+    let scene = "../../examples/scenes/blocks_3d.toml";
     let (report, csv, vtu) = solve(scene, &dir, &["-fetifeti_ksp_rtol", "1e-9"]);
     assert_eq!(report["dimension"], 3);
     assert_eq!(report["components"], 3);
@@ -201,7 +201,7 @@ fn run_summary(scene: &str) -> String {
 fn loose_bodies_balance_in_forces_and_moments() {
     let dir = Scratch::new("elastic-moments");
     // A cantilever of three bodies, of which two float, above an obstacle that its end comes to lie on.
-    let text = fs::read_to_string("examples/scenes/beam_2d.toml").unwrap();
+    let text = fs::read_to_string("../../examples/scenes/beam_2d.toml").unwrap();
     let obstacle = "\n[[obstacle]]\nbody = \"b2_0\"\nside = \"bottom\"\n\
                     plane = { point = [0, -0.05], normal = [0, 1] }\n";
     let scene = dir.path("beam.toml");
@@ -238,7 +238,7 @@ fn loose_bodies_balance_in_forces_and_moments() {
 #[test]
 fn scalar_solids_have_pictures_and_no_vectors() {
     let dir = Scratch::new("scalar-solid");
-    let (report, csv, vtu) = solve("examples/scenes/cube_3d.toml", &dir, &[]);
+    let (report, csv, vtu) = solve("../../examples/scenes/cube_3d.toml", &dir, &[]);
     assert_eq!(report["dimension"], 3);
     assert_eq!(report["physics"], "scalar");
     assert_eq!(csv, "", "nothing touches");
@@ -252,7 +252,7 @@ fn scalar_solids_have_pictures_and_no_vectors() {
 #[test]
 fn two_ranks_write_the_same() {
     let [one, two] = ["elastic-one", "elastic-two"].map(Scratch::new);
-    let scene = "examples/scenes/blocks_3d.toml";
+    let scene = "../../examples/scenes/blocks_3d.toml";
     let args = ["-fetifeti_ksp_rtol", "1e-10"];
     let (a, first, _) = solve(scene, &one, &args);
     let out = two.path("out");

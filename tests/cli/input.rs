@@ -35,7 +35,7 @@ fn bad_scene(text: &str, parts: &[&str]) {
 
 pub const GRID: &str =
     "[grid]\nbodies = 2\nelements = 4\nsubdomains = 2\nload = 1\ndirichlet = \"all\"\n";
-const EXAMPLE: &str = "examples/scenes/poisson_2x2.toml";
+const EXAMPLE: &str = "../../examples/scenes/poisson_2x2.toml";
 
 fn grid(line: &str) -> String {
     format!("{GRID}{line}\n")

@@ -49,7 +49,7 @@ fn what_does_not_fit_is_refused_before_it_is_made() {
 
 #[test]
 fn the_limit_can_be_set() {
-    let scene = "examples/scenes/model_contact.toml";
+    let scene = "../../examples/scenes/model_contact.toml";
     let out = fetifeti(&["solve", scene, "-fetifeti_memory_limit", "40"]);
     let parts = [scene, "where 40 MB of -fetifeti_memory_limit are left"];
     refused(Some(out.code), &out.stdout, &out.stderr, &parts);
@@ -119,7 +119,7 @@ fn gaps_and_meshes_beyond_all_units_are_named() {
             assert!(out.stderr.contains(part), "{part}: {}", out.all());
         }
     };
-    let scene = std::fs::read_to_string("examples/scenes/contact_gap_table.toml");
+    let scene = std::fs::read_to_string("../../examples/scenes/contact_gap_table.toml");
     let scene = scene.expect("the scene");
     let table = scene.lines().find(|l| l.starts_with("gap = "));
     let table = table.expect("a gap");
@@ -135,7 +135,8 @@ fn gaps_and_meshes_beyond_all_units_are_named() {
         refused(scene.replace(table, &format!("gap = {gap}")), part);
     }
     let mesh = "[mesh]\nfile = \"FILE\"\nscale = SCALE\n[[body]]\nname = \"quads\"\ndirichlet = [\"all\"]\n";
-    let file = std::fs::canonicalize("tests/fixtures/meshes/plate.gmsh22.msh").expect("a mesh");
+    let file =
+        std::fs::canonicalize("../../tests/fixtures/meshes/plate.gmsh22.msh").expect("a mesh");
     let mesh = mesh.replace("FILE", &file.display().to_string());
     for scale in ["1e300", "1e-300"] {
         refused(mesh.replace("SCALE", scale), "(take another `scale`)");
@@ -146,7 +147,7 @@ fn gaps_and_meshes_beyond_all_units_are_named() {
 #[test]
 fn what_has_no_end_is_refused() {
     let zero = "/dev/zero";
-    let contact = "examples/scenes/model_contact.toml";
+    let contact = "../../examples/scenes/model_contact.toml";
     for (args, part) in [
         (&["solve", zero][..], "has more than 256 MB, or no end"),
         (&["plan", zero], "has more than 256 MB, or no end"),

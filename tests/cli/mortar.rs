@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// `examples/scenes/mortar_2d.toml` with other counts and coefficients; the first body carries the multipliers.
 fn scene(row: &Value) -> String {
-    let text = std::fs::read_to_string("examples/scenes/mortar_2d.toml").expect("a scene");
+    let text = std::fs::read_to_string("../../examples/scenes/mortar_2d.toml").expect("a scene");
     let n = row["subdomains"].as_u64().expect("a count");
     let parts = text.split("[[body]]").enumerate().map(|(k, part)| {
         let Some(side) = k.checked_sub(1) else {
@@ -80,7 +80,7 @@ fn kappa_of_the_example_is_that_of_the_oracle() {
     }
     // As the comment of the example says.
     let of = |more: &[&str]| {
-        let report = solve("examples/scenes/mortar_2d.toml", more);
+        let report = solve("../../examples/scenes/mortar_2d.toml", more);
         number(&report["condition"]["exact"]["kappa"])
     };
     assert!((of(&[]) - 2.4302).abs() < 1e-4);
@@ -91,7 +91,7 @@ fn kappa_of_the_example_is_that_of_the_oracle() {
 #[test]
 fn the_program_checks_mortar_rows() {
     let scratch = Scratch::new("mortar-check");
-    for case in fetifeti::study::hard_cases::trackers() {
+    for case in lab::study::hard_cases::trackers() {
         let file = scratch.file("s.toml", &case.text);
         for more in [&[][..], &["-fetifeti_pc_type", "dirichlet"]] {
             let report = solve(&file, more);

@@ -5,12 +5,12 @@ use crate::support::sample::sample;
 
 #[test]
 fn the_plan_names_bodies_and_sizes() {
-    let out = fetifeti(&["plan", "examples/scenes/partly_tied.toml"]);
+    let out = fetifeti(&["plan", "../../examples/scenes/partly_tied.toml"]);
     assert_eq!(out.code, 0, "{}", out.all());
     for word in ["left", "middle", "right", "16", "multipliers"] {
         assert!(out.stdout.contains(word), "{word}: {}", out.all());
     }
-    let examples = std::fs::read_dir("examples/scenes").expect("the examples");
+    let examples = std::fs::read_dir("../../examples/scenes").expect("the examples");
     let mut paths: Vec<_> = examples.map(|e| e.expect("an entry").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     paths.sort();
@@ -38,7 +38,7 @@ fn the_plan_counts_inequalities_and_load_steps() {
         ),
         ("model_tied", "outer loop            none: no inequality"),
     ] {
-        let out = fetifeti(&["plan", &format!("examples/scenes/{name}.toml")]);
+        let out = fetifeti(&["plan", &format!("../../examples/scenes/{name}.toml")]);
         assert_eq!(out.code, 0, "{}", out.all());
         assert!(out.stdout.lines().any(|l| l == expected), "{}", out.stdout);
         let steps = out.stdout.contains("load steps");

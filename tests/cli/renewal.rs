@@ -6,7 +6,7 @@ use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
 
-use fetifeti::checkpoint::file::read;
+use fetifeti_cli::checkpoint::file::read;
 use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti, PATH};
 use serde_json::Value;
@@ -336,7 +336,7 @@ fn plan_says_what_is_renewed() {
 
 #[test]
 fn the_dent_goes_along_with_the_punch_of_the_example() {
-    let text = fs::read_to_string("examples/scenes/sliding_punch.toml").expect("the example");
+    let text = fs::read_to_string("../../examples/scenes/sliding_punch.toml").expect("the example");
     let probes = "[[probe]]\nname = \"there\"\nbody = \"layer\"\npoint = [4.05, 1]\n\
                   [[probe]]\nname = \"here\"\nbody = \"layer\"\npoint = [1.25, 1]\n";
     let report = solved("punch", &format!("{text}{probes}"), 2);

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::support::mpi::Scratch;
 use crate::support::program::{fetifeti, run_fetifeti};
 
-const SCENE: &str = "examples/scenes/model_contact.toml";
+const SCENE: &str = "../../examples/scenes/model_contact.toml";
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
@@ -41,7 +41,7 @@ fn a_misspelt_option_is_a_warning_on_standard_error() {
 /// What every command says of options: those that nobody knows with the nearest name, none of those that it knows.
 #[test]
 fn every_command_warns_of_misspelt_options() {
-    let small = "examples/scenes/poisson_2x2.toml";
+    let small = "../../examples/scenes/poisson_2x2.toml";
     let warned = |args: &[&str], expected: &[&str]| {
         let out = fetifeti(args);
         assert_eq!(out.code, 0, "{args:?}: {}", out.all());

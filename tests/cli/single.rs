@@ -7,7 +7,7 @@ use crate::support::program::{ended, PATH};
 fn alone(name: &str, value: &str) -> Output {
     let mut command = mpi::command(PATH);
     let command = command
-        .args(["solve", "examples/scenes/poisson_2x2.toml"])
+        .args(["solve", "../../examples/scenes/poisson_2x2.toml"])
         .env("PATH", "")
         .env("OMPI_MCA_orte_tmpdir_base", "Cargo.toml/below_a_file")
         .env(name, value);

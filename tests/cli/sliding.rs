@@ -117,7 +117,7 @@ fn a_side_that_tilts_is_said_to_turn() {
 
 #[test]
 fn scalar_contact_says_nothing_about_sliding() {
-    let out = run_fetifeti(1, &["solve", "examples/scenes/obstacle.toml"]);
+    let out = run_fetifeti(1, &["solve", "../../examples/scenes/obstacle.toml"]);
     assert_eq!(out.code, 0, "{}", out.all());
     assert!(!out.stdout.contains("sliding"), "{}", out.stdout);
 }

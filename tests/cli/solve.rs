@@ -7,7 +7,7 @@ use mpi::{Output, Scratch};
 use program::fetifeti;
 use serde_json::Value;
 
-const EXAMPLE: &str = "examples/scenes/poisson_2x2.toml";
+const EXAMPLE: &str = "../../examples/scenes/poisson_2x2.toml";
 
 /// `solve` with the report on standard output.
 fn solve(scene: &str, more: &[&str]) -> (Output, Value) {
@@ -19,7 +19,7 @@ fn solve(scene: &str, more: &[&str]) -> (Output, Value) {
 #[test]
 fn the_report_has_every_key_of_the_contract() {
     let (out, r) = solve(
-        "examples/scenes/exact_sine.toml",
+        "../../examples/scenes/exact_sine.toml",
         &["-fetifeti_spectrum", "-fetifeti_check"],
     );
     assert_eq!(out.code, 0, "{}", out.all());
@@ -127,7 +127,7 @@ fn results_are_written_where_they_were_asked_for() {
     let dir = scratch.path("deep/er");
     let out = fetifeti(&[
         "solve",
-        "examples/scenes/unequal_bodies.toml",
+        "../../examples/scenes/unequal_bodies.toml",
         "--out",
         &dir,
     ]);
@@ -165,7 +165,7 @@ fn identities_are_printed_and_vanish() {
         "one_subdomain",
         "lee_column_2",
     ] {
-        let path = format!("examples/scenes/{scene}.toml");
+        let path = format!("../../examples/scenes/{scene}.toml");
         let (out, report) = solve(&path, &["-fetifeti_check"]);
         assert_eq!(out.code, 0, "{}", out.all());
         let identities = report["check"].as_object().expect("identities");
@@ -245,7 +245,7 @@ fn typos_show_up_as_options_left() {
 
 #[test]
 fn solvers_are_seen_by_their_prefixes() {
-    let scene = "examples/scenes/lee_column_1.toml";
+    let scene = "../../examples/scenes/lee_column_1.toml";
     let options = [
         "-fetifeti_gtg_ksp_type",
         "cg",
@@ -295,7 +295,7 @@ fn solvers_are_seen_by_their_prefixes() {
 
 #[test]
 fn an_eigensolver_that_fails_is_said() {
-    let scene = "examples/scenes/lee_column_1.toml";
+    let scene = "../../examples/scenes/lee_column_1.toml";
     let options = ["-fetifeti_spectrum", "-fetifeti_eps_max_it", "1"];
     let out = fetifeti(&[&["solve", scene, "--quiet"], &options[..]].concat());
     assert_eq!(out.code, 1, "{}", out.all());
@@ -305,7 +305,7 @@ fn an_eigensolver_that_fails_is_said() {
 
 #[test]
 fn a_coarse_solver_that_fails_is_said() {
-    let scene = "examples/scenes/lee_column_1.toml";
+    let scene = "../../examples/scenes/lee_column_1.toml";
     let options = [
         "-fetifeti_coarse_ksp_type",
         "cg",
@@ -344,7 +344,7 @@ fn help_lists_our_options() {
 
 #[test]
 fn a_million_unknowns_are_solved() {
-    let (out, report) = solve("examples/scenes/speed_1024.toml", &[]);
+    let (out, report) = solve("../../examples/scenes/speed_1024.toml", &[]);
     assert_eq!(out.code, 0, "{}", out.all());
     let [setup, solve, recover] =
         ["setup", "solve", "recover"].map(|p| number(&report["seconds"][p]));
@@ -360,7 +360,7 @@ fn a_tolerance_below_rounding_is_not_reported_as_reached() {
         .flat_map(|scene| methods.map(|method| (*scene, method)));
     let equations = [("model_tied", "active_set"), ("jump_1e6", "active_set")];
     for (scene, method) in sample(2, contact.chain(equations)) {
-        let file = format!("examples/scenes/{scene}.toml");
+        let file = format!("../../examples/scenes/{scene}.toml");
         let run = |rtol: &str| {
             let more = ["-fetifeti_contact_type", method, "-fetifeti_ksp_rtol", rtol];
             let (out, report) = solve(&file, &more);
@@ -398,7 +398,7 @@ fn the_summary_says_what_was_reached_above_a_tolerance_below_rounding() {
 /// residual of the smallest eigenvalue falls for more than a hundred restarts after its value is known.
 #[test]
 fn the_spectrum_of_inclusions_takes_few_restarts() {
-    let scene = "examples/scenes/coefficients_inclusions.toml";
+    let scene = "../../examples/scenes/coefficients_inclusions.toml";
     let more = ["-fetifeti_spectrum", "-fetifeti_eps_max_it", "30"];
     let (out, report) = solve(scene, &more);
     assert_eq!(out.code, 0, "{}", out.all());

@@ -5,9 +5,9 @@ use crate::support::checks::identities;
 use crate::support::session::with_session;
 use crate::support::{direct, mpi, program};
 use direct::{tight, Direct};
-use fetifeti::scene::Scene;
 use mpi::Scratch;
 use program::fetifeti;
+use scene::Scene;
 
 #[test]
 fn a_balanced_load_on_loose_bodies_is_solved() {

@@ -6,9 +6,9 @@ use std::path::Path;
 use crate::support::keys::{self, Keys};
 use crate::support::sample::of;
 use crate::support::{mpi, program};
-use fetifeti::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spread};
 use mpi::Scratch;
 use program::fetifeti;
+use report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spread};
 
 /// Required keys of the report.
 const KEYS: Keys = &[

@@ -3,8 +3,8 @@
 
 use crate::support::{compared, program};
 use compared::{solved, SceneFile};
-use fetifeti::report::json::{CompareContact, CompareReport, CompareRow};
 use program::fetifeti;
+use report::json::{CompareContact, CompareReport, CompareRow};
 
 fn contact(row: &CompareRow) -> CompareContact {
     row.run.contact.expect("what became of the inequalities")
@@ -31,7 +31,8 @@ fn check(report: &CompareReport, rtol: f64) {
 
 /// Lee's model problem, with subdomains and elements of each body.
 fn model(subdomains: &str, elements: &str) -> String {
-    let text = std::fs::read_to_string("examples/scenes/model_contact.toml").expect("the scene");
+    let text =
+        std::fs::read_to_string("../../examples/scenes/model_contact.toml").expect("the scene");
     let fine = "subdomains = [4, 4]";
     assert!(text.contains(fine) && text.contains("elements = 32"));
     text.replace(fine, &format!("subdomains = {subdomains}"))

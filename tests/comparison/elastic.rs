@@ -4,7 +4,7 @@
 use crate::support::compared;
 use crate::support::sample::all_cases;
 use compared::{solved, SceneFile};
-use fetifeti::report::json::{CompareReport, CompareRow};
+use report::json::{CompareReport, CompareRow};
 
 /// All methods on a scene, to 1e-9.
 fn compare(name: &str, text: &str, more: &[&str]) -> CompareReport {

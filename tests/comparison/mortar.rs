@@ -6,7 +6,7 @@ use crate::support::compared::{solved, SceneFile};
 use crate::support::mpi::Scratch;
 use crate::support::sample::sample;
 use crate::support::surface_mesh;
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 const RTOL: f64 = 1e-8;
 
@@ -56,7 +56,7 @@ fn blocks() -> String {
 
 /// A block that a rigid die of a mesh is pressed into.
 fn die() -> String {
-    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes/die.msh");
+    let mesh = concat!(env!("FETIFETI_ROOT"), "/examples/scenes/die.msh");
     format!(
         "physics = \"elasticity\"\n[[body]]\nname = \"block\"\norigin = [0, 0.06]\nsize = [2, 1]\n\
          elements = [20, 10]\nsubdomains = [4, 2]\nyoung = 10\npoisson = 0.4\ndirichlet = {{ top = 0 }}\n\

@@ -2,8 +2,8 @@
 
 use crate::support::{compared, keys, mpi, program};
 use compared::{solved, SceneFile};
-use fetifeti::report::json::{CompareReport, CompareRow};
 use program::fetifeti;
+use report::json::{CompareReport, CompareRow};
 
 fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a CompareRow {
     let fits =

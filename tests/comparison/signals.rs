@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::mpi::{command, Scratch};
 use crate::support::program::PATH;
-use fetifeti::report::json::BenchReport;
+use report::json::BenchReport;
 
 /// For hangs only.
 const LIMIT: Duration = Duration::from_secs(300);

@@ -4,10 +4,10 @@
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
+use base::Error;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::Error;
+use petsc::Session;
+use scene::Scene;
 
 const SCENES: [&str; 5] = [
     "contact_row_16",
@@ -26,7 +26,7 @@ const KINDS: [ContactType; 3] = [
 /// The reference is certified to 1e-10 independently. Energies agree to 1e-8, KKT residuals are below 1e-8, and rows
 /// with a force are closed in both solutions.
 fn agree(session: &Session, name: &str, kinds: &[ContactType]) -> Result<(), String> {
-    let path = format!("{}/examples/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/examples/scenes/{name}.toml", env!("FETIFETI_ROOT"));
     let scene = Scene::load(path).map_err(|e| e.to_string())?;
     let problem = Assembled::of_scene(&scene);
     let reference: Reference = problem.solve();

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use crate::support::sample::{all_cases, sample};
 use crate::support::session::with_session;
-use fetifeti::scene::Scene;
-use fetifeti::{FetiFeti, MethodSettings, Session, Solution};
+use fetifeti::{FetiFeti, MethodSettings, Solution};
+use petsc::Session;
+use scene::Scene;
 
 /// Scenes that take seconds.
 const LARGE: [&str; 5] = [
@@ -19,7 +20,7 @@ const LARGE: [&str; 5] = [
 /// The examples that have a solution.
 fn examples(large: bool) -> Vec<(String, Scene)> {
     let mut paths: Vec<PathBuf> = Vec::new();
-    for folder in ["examples/scenes", "examples/gallery"] {
+    for folder in ["../../examples/scenes", "../../examples/gallery"] {
         let entries = std::fs::read_dir(folder).expect("a folder");
         paths.extend(entries.map(|entry| entry.expect("an entry").path()));
     }

@@ -4,10 +4,10 @@
 use crate::support::sample::of;
 use crate::support::session::with_session;
 use crate::support::{contact_judge, elastic_scene, mpi};
+use base::Error;
 use elastic_scene::{case, Case, Fate};
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::Error;
+use petsc::Session;
 
 const KINDS: [ContactType; 3] = [
     ContactType::ActiveSet,

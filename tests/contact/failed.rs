@@ -2,10 +2,11 @@
 
 use crate::support::checks::near;
 use crate::support::session::with_session;
+use base::Error;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::{Error, FetiFeti, MethodSettings, Settings, Spectrum};
+use fetifeti::{FetiFeti, MethodSettings, Settings, Spectrum};
+use petsc::Session;
+use scene::Scene;
 
 /// A block that floats, pressed onto another one in its middle.
 const BLOCKS: &str = "title = \"blocks\"\nphysics = \"elasticity\"\n\

@@ -9,10 +9,10 @@ use crate::support::sample::sample;
 use crate::support::session::with_session;
 use crate::support::wall::wall;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::study::walls::{self, FAMILIES};
 use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use lab::study::walls::{self, FAMILIES};
+use petsc::Session;
+use scene::Scene;
 
 /// More steps than any scene here needs with some room; far fewer than the limit of the loop.
 const STEPS: usize = 60;

@@ -5,11 +5,12 @@ use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
+use base::{Error, Result};
 use contact_judge::How;
 use fetifeti::contact::{ContactStart, ContactType};
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::{Error, FetiFeti, ProjectorKind, Result, Settings};
+use fetifeti::{FetiFeti, ProjectorKind, Settings};
+use petsc::Session;
+use scene::Scene;
 
 const KINDS: [ContactType; 3] = [
     ContactType::ActiveSet,

@@ -1,10 +1,11 @@
 //! Contact where nodes do not match: the same answer by all methods, and rows that depend on each other.
 
 use crate::support::session::with_session;
+use base::Result;
 use fetifeti::contact::ContactType;
-use fetifeti::scene::Scene;
-use fetifeti::study::hard_cases::trackers;
-use fetifeti::{FetiFeti, MethodSettings, Result, Settings, Solution};
+use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use lab::study::hard_cases::trackers;
+use scene::Scene;
 
 /// Solves by one method, or says why not.
 fn solve(text: &str, kind: ContactType) -> Result<(Scene, Solution)> {

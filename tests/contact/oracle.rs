@@ -5,11 +5,11 @@ use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::{mpi, program};
 use fetifeti::contact::{self, ContactType};
-use fetifeti::scene::Scene;
-use fetifeti::Session;
 use fetifeti::{FetiFeti, MethodSettings, RowState, Settings, Solution};
 use mpi::Scratch;
+use petsc::Session;
 use program::run_fetifeti;
+use scene::Scene;
 use serde_json::Value;
 
 fn oracle() -> Vec<Value> {

@@ -4,10 +4,10 @@ use crate::support::sample::of;
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi, random_scene};
 use assembled::compare::Agreement;
+use base::Error;
 use contact_judge::How;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::Error;
+use petsc::Session;
 use random_scene::{Case, Collection, Fate};
 
 const KINDS: [ContactType; 3] = [

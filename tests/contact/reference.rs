@@ -5,8 +5,8 @@ use crate::support::sample::all_cases;
 use crate::support::{assembled, qp};
 use assembled::compare::{compare, Candidate, Tolerances};
 use assembled::{Assembled, Place, Reference};
-use fetifeti::scene::Scene;
 use qp::{Outcome, CERTIFIED};
+use scene::Scene;
 
 /// (3.1)–(3.3) of [Lee] with `n` elements per side.
 fn model(n: usize) -> Scene {
@@ -113,7 +113,7 @@ fn a_hundred_bodies() {
 #[test]
 fn the_example_scenes_with_contact() {
     let mut count = 0;
-    let entries = std::fs::read_dir("examples/scenes").unwrap();
+    let entries = std::fs::read_dir("../../examples/scenes").unwrap();
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     paths.sort();

@@ -4,8 +4,8 @@ use crate::support::assembled::Assembled;
 use crate::support::checks::near;
 use crate::support::mpi::{command, Scratch};
 use crate::support::session::with_session;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, MethodSettings, Solution};
+use scene::Scene;
 
 /// The scene that `scripts/wave_spring.py` writes.
 fn scene(rings: usize, around: usize) -> Scene {
@@ -13,7 +13,7 @@ fn scene(rings: usize, around: usize) -> Scene {
     let out = scratch.path("");
     let (rings, around) = (rings.to_string(), around.to_string());
     let mut python = command("python3");
-    python.args(["scripts/wave_spring.py", &rings, &around, &out]);
+    python.args(["../../scripts/wave_spring.py", &rings, &around, &out]);
     let done = python.output().expect("python3 starts");
     assert!(done.status.success(), "{done:?}");
     Scene::load(scratch.path("wave_spring.toml")).expect("a good scene")

@@ -4,9 +4,9 @@ use crate::support::mpi::Scratch;
 use crate::support::program::fetifeti;
 use crate::support::session::with_session;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use petsc::Session;
+use scene::Scene;
 
 const KINDS: [ContactType; 3] = [
     ContactType::ActiveSet,

@@ -6,9 +6,9 @@ use crate::support::session::with_session;
 use crate::support::{mpi, solid};
 use fetifeti::feti::Adaptive;
 use fetifeti::feti::{MethodSettings, Scaling};
-use fetifeti::petsc::Session;
 use fetifeti::substructures::Substructures;
 use fetifeti::FetiFeti;
+use petsc::Session;
 use solid::{assembled, Physics, Rows, Solid};
 
 const SCALAR: Physics = Physics::Scalar;

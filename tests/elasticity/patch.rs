@@ -2,11 +2,11 @@
 //! and distorted, for every element and cure of locking.
 
 use crate::support::session::with_session;
-use fetifeti::fem::ErrorNorms;
 use fetifeti::feti::{MethodSettings, Precision};
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use petsc::Session;
+use scene::assembly::ErrorNorms;
+use scene::Scene;
 
 /// Error norms of the solution of a scene, against the exact solution in the scene.
 pub fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {

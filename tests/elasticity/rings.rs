@@ -3,9 +3,9 @@
 use super::patch::errors;
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use petsc::Session;
+use scene::Scene;
 use std::f64::consts::PI;
 
 const RING: &str = "physics = \"elasticity\"\nplane = \"axisymmetric\"\norder = 2\n";

@@ -6,9 +6,9 @@ use crate::support::sample::sample;
 use crate::support::session::with_session;
 use crate::support::{mpi, solid};
 use fetifeti::feti::{MethodSettings, Primal, ProjectorKind, Scaling};
-use fetifeti::petsc::{Options, Session};
 use fetifeti::substructures::Substructures;
 use fetifeti::FetiFeti;
+use petsc::{Options, Session};
 use solid::{assembled, Held, Physics, Rows, Solid};
 
 const ELASTIC: Physics = Physics::Elastic { nu: 0.3 };

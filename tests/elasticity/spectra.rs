@@ -6,8 +6,8 @@ use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::solid;
 use fetifeti::feti::{MethodSettings, PcType, Primal};
-use fetifeti::petsc::{Options, Session};
 use fetifeti::FetiFeti;
+use petsc::{Options, Session};
 use solid::{Physics, Rows, Solid};
 
 const SCALAR: Physics = Physics::Scalar;

@@ -11,7 +11,9 @@ fn path(name: &str) -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
     BUILT.get_or_init(|| {
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--examples"]);
+        cargo
+            .args(["build", "--quiet", "--examples"])
+            .current_dir(env!("FETIFETI_ROOT"));
         if !cfg!(debug_assertions) {
             cargo.arg("--release");
         }

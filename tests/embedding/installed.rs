@@ -25,7 +25,7 @@ pub fn install_to(scratch: &Scratch, prefix: &str, destdir: &str, libdir: &str) 
     command
         .arg(&built)
         .args([prefix, destdir])
-        .current_dir(env!("CARGO_MANIFEST_DIR"));
+        .current_dir(env!("FETIFETI_ROOT"));
     if !libdir.is_empty() {
         command.env("LIBDIR", libdir);
     }
@@ -66,7 +66,7 @@ pub fn files(below: &Path) -> Vec<PathBuf> {
 
 /// Asks that a file names neither the source tree nor the directory of the crates.
 pub fn names_no_tree(file: &Path) {
-    let tree = env!("CARGO_MANIFEST_DIR").as_bytes();
+    let tree = env!("FETIFETI_ROOT").as_bytes();
     let home = std::env::var("CARGO_HOME").or_else(|_| Ok(std::env::var("HOME")? + "/.cargo"));
     let crates = home.map(|home: String| home + "/registry/");
     let crates = crates.unwrap_or_else(|_: std::env::VarError| "/registry/src/".into());
@@ -167,7 +167,7 @@ fn examples_build_with_what_was_installed() {
     assert!((number_after(&out, "force") - 0.1).abs() < 1e-6);
 
     // What was built there stays, what was installed goes.
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("FETIFETI_ROOT"));
     let makefile = root.join("Makefile").display().to_string();
     let to = format!("PREFIX={moved}");
     run("make", &["-s", "-f", &makefile, "uninstall", &to], root, "");
@@ -196,7 +196,7 @@ fn a_prefix_that_cannot_be_written_is_named() {
     std::fs::write(scratch.path("file"), "").expect("a file");
     let built = Path::new(env!("CARGO_BIN_EXE_fetifeti"));
     let dir = built.parent().expect("a directory").display().to_string();
-    let root = env!("CARGO_MANIFEST_DIR");
+    let root = env!("FETIFETI_ROOT");
     let try_it = |args: &[&str]| {
         let out = Command::new("scripts/install.sh")
             .args(args)

@@ -23,7 +23,7 @@ fn a_petsc4py_script() {
     let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
     let path = std::env::var("PYTHONPATH").unwrap_or_default();
     let path = format!("{modules}:{path}");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plugin/host.py");
+    let script = Path::new(env!("FETIFETI_ROOT")).join("tests/plugin/host.py");
     let script = script.to_str().expect("the path is UTF-8");
     for ranks in [1, 4] {
         let library = library();

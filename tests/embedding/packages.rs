@@ -6,8 +6,8 @@ use std::process::Command;
 use crate::installed::{files, install_to, run};
 use crate::support::mpi::Scratch;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const DEBIAN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/packaging/debian");
+const ROOT: &str = env!("FETIFETI_ROOT");
+const DEBIAN: &str = concat!(env!("FETIFETI_ROOT"), "/packaging/debian");
 
 /// All that Cargo.lock names is found in the archive: cargo reads the manifests of all crates with neither a network
 /// nor anything that was loaded before.

@@ -11,7 +11,7 @@ use crate::support::plugin::library;
 /// Debian stores petsc4py next to the PETSc that it was built for.
 const PETSC4PY: &str =
     "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("FETIFETI_ROOT");
 
 /// Runs a script of the source tree, which finds petsc4py, the package and the library.
 pub fn script(script: &str, ranks: usize, options: &str) -> Output {
@@ -156,7 +156,7 @@ fn pip_builds_the_library_where_there_is_none() {
     empty(&mut pip);
     run(&mut pip);
     let called = std::fs::read_to_string(format!("{bin}/called")).expect("cargo was called");
-    let expected = format!("{tree}\nbuild --release --lib --no-default-features\n");
+    let expected = format!("{tree}\nbuild --release --package fetifeti\n");
     assert_eq!(called, expected);
     names_no_tree(Path::new(&format!("{place}/fetifeti/libfetifeti.so")));
     let mut python = command("/usr/bin/python3");

@@ -152,10 +152,7 @@ fn an_old_processor_gets_a_sentence() {
         assert!(said.contains(sentence), "{program}: {said}");
         out.status.code()
     };
-    let scene = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/examples/scenes/poisson_2x2.toml"
-    );
+    let scene = concat!(env!("FETIFETI_ROOT"), "/examples/scenes/poisson_2x2.toml");
     assert_eq!(
         old(env!("CARGO_BIN_EXE_fetifeti"), &["solve", scene]),
         Some(3)

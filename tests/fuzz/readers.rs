@@ -6,10 +6,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use crate::mesh::{deck, defects, gmsh, Extractor, Members, MeshFile};
-use crate::petsc::{Options, Session};
-use crate::scene::{need::Need, Cells, DeckScenes, Expr, NumberFormat, Scene, Tone, Variables};
-use crate::{checkpoint, cli, Error, Result, Settings};
+use crate::checkpoint;
+use base::{Error, Result};
+use fetifeti::Settings;
+use mesh::{defects, gmsh, Extractor, Members, MeshFile};
+use petsc::{Options, Session};
+use scene::{need::Need, Cells, DeckScenes, Expr, NumberFormat, Scene, Tone, Variables};
 
 /// Elements of the largest scene that is made from what was read: a reader shows its mistakes on small ones.
 const LARGEST: f64 = 3e3;
@@ -34,7 +36,7 @@ pub fn scene(bytes: &[u8]) {
         return;
     };
     const FILE: &str = "/nowhere/scene.toml";
-    let Some(spec) = judge(crate::scene::read(FILE, text), FILE) else {
+    let Some(spec) = judge(scene::read(FILE, text), FILE) else {
         return;
     };
     let need = Need::of(spec.bodies.iter(), &spec.form, true);
@@ -180,7 +182,7 @@ pub fn options(bytes: &[u8]) {
         static SESSION: Session = Session::new(&[], "").expect("PETSc starts");
     }
     let words: Vec<String> = text.split_ascii_whitespace().map(String::from).collect();
-    let Some(invocation) = judge(cli::parse_line(words), "fetifeti --help") else {
+    let Some(invocation) = judge(crate::parse_line(words), "fetifeti --help") else {
         return;
     };
     SESSION.with(|session| {

@@ -12,13 +12,13 @@ mod scenes;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 
-use crate::assembled::layout::Layout;
-use crate::assembled::reference::{Precision, Reference};
-use crate::assembled::rows::Inequalities;
-use crate::baselines::{judge, solve_ours, Job, Task};
-use crate::petsc::Session;
-use crate::scene::{distribution, Scene};
-use crate::{Error, Result};
+use base::{Error, Result};
+use lab::assembled::layout::Layout;
+use lab::assembled::reference::{Precision, Reference};
+use lab::assembled::rows::Inequalities;
+use lab::baselines::{judge, solve_ours, Job, Task};
+use petsc::Session;
+use scene::{distribution, Scene};
 
 /// The bound for the residual of the assembled problem.
 const RTOL: f64 = 1e-9;

@@ -5,7 +5,7 @@ use crate::support::direct;
 use crate::support::session::with_session;
 use direct::{with_options, Direct};
 use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 /// An error may be this many times the tolerance: `CREDIBLE` of the certificate.
 const CREDIBLE: f64 = 1e3;

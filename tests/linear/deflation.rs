@@ -6,10 +6,10 @@ use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
 use fetifeti::feti::Adaptive;
 use fetifeti::feti::MethodSettings;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use petsc::Session;
 use rng::Rng;
+use scene::Scene;
 
 /// n × n bodies of n_s × n_s subdomains of 4 × 4 elements, held on the left, ρ of a subdomain at random between
 /// 10^−decades and 10^decades.
@@ -146,7 +146,7 @@ fn channels_across_subdomains_and_bodies() {
 #[test]
 fn nothing_is_deflated_where_coefficients_are_constant() {
     with_session(|session| {
-        let scene = Scene::load("examples/scenes/lee_column_1.toml").expect("a scene");
+        let scene = Scene::load("../../examples/scenes/lee_column_1.toml").expect("a scene");
         let solver = solver(session, &scene, MethodSettings::default());
         assert!(solver.solve().expect("solved").converged());
         assert!(solver.deflated().is_none());
@@ -245,7 +245,7 @@ fn contact_keeps_its_vectors() {
 }
 
 /// One rank's share; subdomains are dealt out in turn.
-fn on_a_rank(session: &Session) -> fetifeti::Result<()> {
+fn on_a_rank(session: &Session) -> base::Result<()> {
     let (size, rank) = (session.size(), session.rank());
     let scene = scene(&by_subdomain(3, 4, 6.0, 2));
     let problem = scene.substructures(&|s| s % size == rank)?;

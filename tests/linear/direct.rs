@@ -4,7 +4,7 @@ use crate::support::direct;
 use crate::support::session::with_session;
 use direct::{floating_scenes, tight, with_options, Direct};
 use fetifeti::feti::{MethodSettings, PcType, ProjectorKind, Scaling};
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 const PC_TYPES: [PcType; 4] = [
     PcType::None,

@@ -7,12 +7,12 @@ use crate::support::session::with_session;
 use crate::support::{mpi, program};
 use fetifeti::feti::{Adaptive, Operators};
 use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
 use fetifeti::Solution;
 use mpi::Scratch;
+use petsc::Session;
 use program::run_fetifeti;
+use scene::Scene;
 use serde_json::Value;
 
 /// Two blocks of eight subdomains each, one on the other, under an oblique load.

@@ -4,8 +4,9 @@
 use crate::support::program;
 use crate::support::session::with_session;
 use fetifeti::feti::{LocalSolver, Ordering, Solver};
-use fetifeti::{FetiFeti, MethodSettings, Scene};
+use fetifeti::{FetiFeti, MethodSettings};
 use program::fetifeti;
+use scene::Scene;
 use serde_json::Value;
 
 /// Bodies that float, in contact and tied; subdomains that touch no side.
@@ -64,7 +65,12 @@ fn displacements_are_the_same_for_every_solver_and_order() {
 #[test]
 fn the_report_names_solver_and_order() {
     let run = |more: &[&str]| -> Value {
-        let scene = ["solve", "examples/scenes/poisson_2x2.toml", "--json", "-"];
+        let scene = [
+            "solve",
+            "../../examples/scenes/poisson_2x2.toml",
+            "--json",
+            "-",
+        ];
         let out = fetifeti(&[&scene, more].concat());
         assert_eq!(out.code, 0, "{}", out.all());
         serde_json::from_str(&out.stdout).expect("a report")
@@ -99,7 +105,12 @@ fn a_name_that_there_is_not_gets_one_sentence() {
         ("-fetifeti_local_solver", "mumps", "not there any more"),
         ("-fetifeti_local_ordering", "rcm", "scotch"),
     ] {
-        let out = fetifeti(&["solve", "examples/scenes/poisson_2x2.toml", option, name]);
+        let out = fetifeti(&[
+            "solve",
+            "../../examples/scenes/poisson_2x2.toml",
+            option,
+            name,
+        ]);
         assert_eq!(out.code, 2, "{}", out.all());
         let said = out.stderr.trim();
         assert_eq!(said.lines().count(), 1, "{}", out.all());

@@ -4,8 +4,8 @@
 use crate::support::checks::identities;
 use crate::support::session::with_session;
 use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 use serde_json::Value;
 
 /// The scene of a row of the table; the first body carries the multipliers.

@@ -4,9 +4,9 @@
 use crate::support::checks::identities;
 use crate::support::session::with_session;
 use fetifeti::feti::{Adaptive, MethodSettings, PcType, ProjectorKind, Scaling};
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, Status};
+use petsc::Session;
+use scene::Scene;
 
 /// Two blocks, the lower one held and the upper one floating, with these moduli and this joint.
 fn blocks(dim: usize, young: [f64; 2], joint: &str) -> String {

@@ -81,7 +81,7 @@ fn same(scene: &str, runs: &[(usize, &str)]) {
 #[test]
 fn tied_bodies() {
     same(
-        "examples/scenes/poisson_2x2.toml",
+        "../../examples/scenes/poisson_2x2.toml",
         &[(2, "block"), (2, "cyclic"), (3, "cyclic"), (4, "block")],
     );
 }
@@ -89,7 +89,7 @@ fn tied_bodies() {
 #[test]
 fn partly_tied_bodies() {
     same(
-        "examples/scenes/partly_tied.toml",
+        "../../examples/scenes/partly_tied.toml",
         &[(2, "cyclic"), (3, "block"), (4, "cyclic")],
     );
 }
@@ -99,7 +99,7 @@ fn partly_tied_bodies() {
 #[test]
 fn a_scene_says_how_its_subdomains_are_dealt_out() {
     let scratch = Scratch::new("dealt");
-    let text = std::fs::read_to_string("examples/scenes/poisson_2x2.toml").expect("a scene");
+    let text = std::fs::read_to_string("../../examples/scenes/poisson_2x2.toml").expect("a scene");
     assert!(!text.contains("[options]"));
     for (k, option) in [
         "fetifeti_distribution = \"cyclic\"",
@@ -127,7 +127,7 @@ fn a_scene_says_how_its_subdomains_are_dealt_out() {
 #[test]
 fn unequal_bodies() {
     same(
-        "examples/scenes/unequal_bodies.toml",
+        "../../examples/scenes/unequal_bodies.toml",
         &[(4, "block"), (2, "cyclic")],
     );
 }
@@ -135,11 +135,11 @@ fn unequal_bodies() {
 #[test]
 fn floating_bodies_with_jumps() {
     same(
-        "examples/scenes/jump_1e6.toml",
+        "../../examples/scenes/jump_1e6.toml",
         &[(2, "cyclic"), (4, "block")],
     );
     same(
-        "examples/scenes/jump_checkerboard.toml",
+        "../../examples/scenes/jump_checkerboard.toml",
         &[(4, "block"), (2, "cyclic")],
     );
 }
@@ -147,11 +147,11 @@ fn floating_bodies_with_jumps() {
 #[test]
 fn one_level_and_dual_primal() {
     same(
-        "examples/scenes/one_subdomain.toml",
+        "../../examples/scenes/one_subdomain.toml",
         &[(2, "cyclic"), (4, "block")],
     );
     same(
-        "examples/scenes/one_body.toml",
+        "../../examples/scenes/one_body.toml",
         &[(4, "block"), (2, "cyclic")],
     );
 }
@@ -182,7 +182,12 @@ fn files_are_written_once_for_all_ranks() {
         let dir = scratch.path(&format!("out{n}"));
         let out = run_fetifeti(
             n,
-            &["solve", "examples/scenes/partly_tied.toml", "--out", &dir],
+            &[
+                "solve",
+                "../../examples/scenes/partly_tied.toml",
+                "--out",
+                &dir,
+            ],
         );
         assert_eq!(out.code, 0, "{}", out.all());
         assert_eq!(out.stdout.matches("written:").count(), 1, "{}", out.all());
@@ -240,7 +245,7 @@ fn load_steps_have_pieces() {
 /// Compares the pieces of three ranks with the files that one rank writes, by place and the fields `names`.
 fn compare_pieces(scene: &str, files: &[&str], names: &[(&str, usize)]) -> Scratch {
     let scratch = Scratch::new(&format!("pieces_{scene}"));
-    let scene = format!("examples/scenes/{scene}.toml");
+    let scene = format!("../../examples/scenes/{scene}.toml");
     let solve = |ranks: usize, more: &[&str]| {
         let dir = scratch.path(&format!("out{ranks}"));
         let options = ["-fetifeti_ksp_rtol", "1e-12"];
@@ -299,7 +304,7 @@ fn compare_pieces(scene: &str, files: &[&str], names: &[(&str, usize)]) -> Scrat
 
 #[test]
 fn krylov_methods_on_two_ranks() {
-    let scene = "examples/scenes/lee_column_2.toml";
+    let scene = "../../examples/scenes/lee_column_2.toml";
     let energy = number(&solve(1, scene, &[])["energy"]);
     for method in ["fcg", "pipecg", "gmres"] {
         let report = solve(2, scene, &["-fetifeti_ksp_type", method]);

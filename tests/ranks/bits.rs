@@ -22,7 +22,7 @@ fn written(ranks: usize, scene: &str, threads: &str) -> Vec<Vec<u8>> {
 fn the_same_run_has_the_same_bits() {
     // Equations of many subdomains; mortar rows; a loop of many steps on many bodies.
     for name in ["poisson_2x2", "mortar_2d", "wall"] {
-        let scene = format!("examples/scenes/{name}.toml");
+        let scene = format!("../../examples/scenes/{name}.toml");
         let of = |ranks, threads| written(ranks, &scene, threads);
         assert!(of(3, "2") == of(3, "2"), "{name}: two runs on 3 ranks");
         assert!(of(1, "2") == of(1, "1"), "{name}: threads matter");

@@ -18,7 +18,7 @@ const SAME: f64 = 1e-6;
 #[test]
 fn bounds_do_not_depend_on_the_ranks() {
     for name in ["model_contact", "mortar_2d", "coefficients_checkerboard"] {
-        let scene = format!("examples/scenes/{name}.toml");
+        let scene = format!("../../examples/scenes/{name}.toml");
         let options = ["-fetifeti_certify", "-fetifeti_ksp_rtol", "1e-4"];
         let of = |ranks| {
             let certified = solve(ranks, &scene, &options)["certified"].clone();
@@ -41,7 +41,7 @@ fn bounds_do_not_depend_on_the_ranks() {
 #[test]
 fn the_iteration_stops_at_the_discretisation_error_on_any_ranks() {
     for name in ["model_contact", "model_tied"] {
-        let scene = format!("examples/scenes/{name}.toml");
+        let scene = format!("../../examples/scenes/{name}.toml");
         let all = solve(1, &scene, &["-fetifeti_ksp_rtol", "1e-10"]);
         let iterations = |r: &Value| number(&r["iterations"]["total"]);
         let one = solve(1, &scene, &["-fetifeti_rtol", "auto"]);

@@ -2,9 +2,10 @@
 
 use crate::support::sample::all_cases;
 use crate::support::{mpi, program};
-use fetifeti::{FetiFeti, MethodSettings, Scene};
+use fetifeti::{FetiFeti, MethodSettings};
 use mpi::{as_rank, Scratch};
 use program::{ended, run_fetifeti};
+use scene::Scene;
 use serde_json::Value;
 use std::process::Command;
 
@@ -16,7 +17,7 @@ fn scenes(scratch: &Scratch) -> Vec<(&'static str, String)> {
                 [options]\nfetifeti_projector = \"preconditioner\"\n";
     let path = scratch.path("tied.toml");
     std::fs::write(&path, tied).expect("the scene can be written");
-    let of_bodies = ["scripts/many_bodies.py", "wall", "9", "8"];
+    let of_bodies = ["../../scripts/many_bodies.py", "wall", "9", "8"];
     let mut script = Command::new("python3");
     let made = ended(script.args(of_bodies).arg(&scratch.0));
     assert_eq!(made.code, 0, "{}", made.all());
@@ -108,7 +109,7 @@ fn kappa(report: &Value) -> f64 {
 #[test]
 fn vectors_of_all_columns_are_not_summed() {
     let scratch = Scratch::new("coarse-sums");
-    let scene = "examples/scenes/wall.toml";
+    let scene = "../../examples/scenes/wall.toml";
     for ranks in [2, 4] {
         let r = report(ranks, scene, &scratch, "");
         let columns = 3.0 * r["floating_bodies"].as_f64().unwrap();

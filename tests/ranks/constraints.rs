@@ -8,7 +8,7 @@ use faer::{Mat, Side};
 
 use super::direct::{compare, solve, Answer};
 use crate::support::mpi::{as_rank, Scratch};
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 /// A plate with its lower left corner, its size, its elements, and more keys.
 fn plate(name: &str, at: [f64; 2], size: [f64; 2], elements: [usize; 2], more: &str) -> String {

@@ -3,7 +3,7 @@
 use super::direct::{compare, solve, Answer};
 use crate::support::copies::{Copies, Kind};
 use crate::support::mpi::{as_rank, Scratch};
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 #[test]
 fn copies_have_the_direct_solution() {

@@ -11,9 +11,11 @@ use std::path::Path;
 use crate::support::assembled::{Assembled, Place};
 use crate::support::mpi::{as_rank, Scratch};
 use crate::support::sample::{all_cases, of};
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::{gather_all, Error, FetiFeti, MethodSettings};
+use base::Error;
+use fetifeti::{FetiFeti, MethodSettings};
+use parallel::exchange::gather_all;
+use petsc::Session;
+use scene::Scene;
 
 const RTOL: f64 = 1e-12;
 
@@ -36,7 +38,7 @@ const FOLDERS: [(&str, usize); 2] = [("gallery", 5), ("scenes", 30)];
 
 /// The scenes of a folder of examples, by name.
 fn scenes(folder: &str) -> Vec<(String, Scene)> {
-    let entries = std::fs::read_dir(Path::new("examples").join(folder)).expect("a folder");
+    let entries = std::fs::read_dir(Path::new("../../examples").join(folder)).expect("a folder");
     let mut paths: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
     paths.retain(|p| p.extension().is_some_and(|e| e == "toml"));
     // The arch that falls has no solution.
@@ -73,7 +75,7 @@ impl Answer {
 }
 
 /// Solves this rank's part of a scene and writes the answer into `out`. Collective.
-pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> fetifeti::Result<()> {
+pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> base::Result<()> {
     let share = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| share.contains(&s))?;
     let settings = MethodSettings {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::faults::whole;
 use crate::support::mpi::{of_petsc, Scratch};
 use crate::support::program::PATH;
-use fetifeti::checkpoint::file::read;
+use fetifeti_cli::checkpoint::file::read;
 
 /// For hangs only.
 const LIMIT: Duration = Duration::from_secs(300);
@@ -104,7 +104,7 @@ impl Run {
 }
 
 fn many_steps() -> String {
-    let text = std::fs::read_to_string("examples/scenes/press_ramp.toml").expect("the scene");
+    let text = std::fs::read_to_string("../../examples/scenes/press_ramp.toml").expect("the scene");
     text.replace("count = 10", "count = 100000")
 }
 

@@ -3,7 +3,7 @@
 use super::direct::{compare, solve, Answer};
 use crate::support::mpi::{as_rank, Scratch};
 use crate::support::plates::joined_plates;
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 /// Cells along a side of each plate: so many that every plate is cut.
 const N: usize = 48;

@@ -4,10 +4,12 @@ use std::path::Path;
 
 use crate::support::mpi::{as_rank, mpirun, Output, Scratch};
 use crate::support::program::{run_fetifeti, PATH};
-use fetifeti::{Csr, FetiFeti, MethodSettings, Scene};
+use base::linalg::csr::Csr;
+use fetifeti::{FetiFeti, MethodSettings};
+use scene::Scene;
 
-const MODEL: &str = "examples/scenes/model_contact.toml";
-const PRESS: &str = "examples/scenes/press_ramp.toml";
+const MODEL: &str = "../../examples/scenes/model_contact.toml";
+const PRESS: &str = "../../examples/scenes/press_ramp.toml";
 
 const RANKS: [usize; 3] = [1, 2, 4];
 

@@ -4,8 +4,8 @@
 use super::direct::{compare, solve, Answer};
 use crate::support::mpi::{as_rank, Scratch};
 use crate::support::sample::sample;
-use fetifeti::scene::Scene;
-use fetifeti::study::hard_cases::trackers;
+use lab::study::hard_cases::trackers;
+use scene::Scene;
 
 /// A strip on a stiff one, with a curved gap, with a block of many rows on the stiff or the soft side; two tied plates;
 /// a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged; two plates on a rigid
@@ -37,7 +37,7 @@ fn scenes() -> Vec<(&'static str, String)> {
         [[body]]\nname = \"up\"\norigin = [0, 0.53]\nsize = [2, 0.5]\nelements = [20, 5]\nsubdomains = [2, 1]\n\
         young = 30\npoisson = 0.3\ndirichlet = { left = { x = 0 } }\ntraction = { top = [0.05, -0.5] }\n\
         [[contact]]\nbodies = [\"low\", \"up\"]\n[[obstacle]]\nbody = \"low\"\nside = \"bottom\"\n\
-        surface = \"die\"\nmesh = \"examples/scenes/die.msh\"\n";
+        surface = \"die\"\nmesh = \"../../examples/scenes/die.msh\"\n";
     // Without any force there is nothing to compare with.
     let moved = |name: &str| !name.starts_with("4c-1585");
     let reported = trackers().into_iter().filter(|c| moved(c.name));

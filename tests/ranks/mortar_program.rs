@@ -4,7 +4,7 @@
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
 use crate::support::sample::sample;
-use fetifeti::study::hard_cases::trackers;
+use lab::study::hard_cases::trackers;
 
 /// A mesh of Gmsh's format 2.2: [0, 2] × [0, 1] and [0, 2] × [1, 2], cut into triangles along 12 and 17 edges, with the
 /// groups of cells `low` and `up` and groups of edges `<body>_bottom`, `<body>_top` and `<body>_left`. Nodes inside are

@@ -8,9 +8,11 @@ use crate::support::direct::with_options;
 use crate::support::mpi::as_rank;
 use crate::support::rng::Rng;
 use crate::support::sample::all_cases;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::{sum_all, Error, FetiFeti, MethodSettings, Result};
+use base::{Error, Result};
+use fetifeti::{FetiFeti, MethodSettings};
+use parallel::exchange::sum_all;
+use petsc::Session;
+use scene::Scene;
 
 /// An option that is not given.
 const UNSET: &str = "";

@@ -2,10 +2,10 @@
 
 use crate::support::{cells, mpi};
 use cells::{bytes32, bytes64, counting, elements, paint, rho, Grid};
-use fetifeti::mesh::BoxMesh;
-use fetifeti::scene::{BodySpec, Cells, Field, Load, Scene, SceneSpec, Tone};
+use mesh::BoxMesh;
 use mpi::Scratch;
 use png::{BitDepth, ColorType};
+use scene::{BodySpec, Cells, Field, Load, Scene, SceneSpec, Tone};
 use std::path::Path;
 
 #[test]

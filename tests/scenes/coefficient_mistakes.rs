@@ -2,9 +2,9 @@
 
 use crate::support::{cells, mpi};
 use cells::{bytes32, bytes64, counting, paint, Grid};
-use fetifeti::scene::Scene;
 use mpi::Scratch;
 use png::{BitDepth, ColorType};
+use scene::Scene;
 
 #[test]
 fn mistakes_in_numbers() {

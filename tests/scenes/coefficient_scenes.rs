@@ -8,16 +8,16 @@ mod make_coefficients;
 use crate::support::checks::number;
 use crate::support::sample::sample;
 use crate::support::{mpi, program};
-use fetifeti::scene::Scene;
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
+use scene::Scene;
 use serde_json::Value;
 use std::fs;
 
 const SCENES: [&str; 5] = ["checkerboard", "channels", "inclusions", "layers", "random"];
 
 fn path(name: &str) -> String {
-    format!("examples/scenes/coefficients_{name}.toml")
+    format!("../../examples/scenes/coefficients_{name}.toml")
 }
 
 fn load(name: &str) -> Scene {
@@ -57,7 +57,7 @@ fn the_generator_writes_the_committed_files() {
     let mut seen = 0;
     for written in scratch.files() {
         let name = written.rsplit('/').next().unwrap();
-        let committed = format!("examples/scenes/{name}");
+        let committed = format!("../../examples/scenes/{name}");
         assert!(fs::metadata(&committed).unwrap().len() < 200_000);
         // PNG compression and the last digit of a power may differ between machines.
         if name.ends_with(".png") {
@@ -121,7 +121,7 @@ fn lines_of_the_coefficient_are_none_of_the_partition() {
         .collect();
     // Subdomain 1 of body 0 is the second entry of the first line. Subdomain 0 of body 3, which is the first body of
     // the second row, is the first entry of the fifth line.
-    let listed = words("examples/scenes/coefficients_random.txt");
+    let listed = words("../../examples/scenes/coefficients_random.txt");
     assert_eq!([values[1], values[16 * 3]], [listed[1], listed[12 * 4]]);
     assert_eq!(values.len(), 144);
 }

@@ -1,8 +1,8 @@
 //! Rows of contacts and obstacles: at faces, cross points, prescribed values; labels; load steps.
 
-use fetifeti::mesh::contiguous_share;
-use fetifeti::scene::{Link, Scene};
 use fetifeti::substructures::{InterfaceRow, RowKind, RowLabel, RowSource};
+use parallel::contiguous_share;
+use scene::{Link, Scene};
 
 fn body(name: &str, origin: &str, more: &str) -> String {
     format!("[[body]]\nname = \"{name}\"\norigin = {origin}\nsize = [1, 1]\nelements = 4\n{more}\n")
@@ -274,7 +274,7 @@ fn every_row_is_provided_once_and_blocks_stay_together() {
         "obstacle",
         "press_ramp",
     ] {
-        let scene = Scene::load(format!("examples/scenes/{name}.toml")).unwrap();
+        let scene = Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap();
         let whole = scene.rows(&|_| true);
         assert_eq!(
             scene.gaps(&|_| true, scene.n_steps() - 1).unwrap(),

@@ -1,9 +1,7 @@
 //! All mistakes in contacts, obstacles and load steps, and the one sentence for each.
 
-use fetifeti::scene::{
-    ContactSpec, Extent, ObstacleSpec, Pair, Profile, Ramp, Scene, SceneSpec, StepsSpec,
-};
-use fetifeti::Error;
+use base::Error;
+use scene::{ContactSpec, Extent, ObstacleSpec, Pair, Profile, Ramp, Scene, SceneSpec, StepsSpec};
 
 /// A body on five lines.
 fn body(name: &str, origin: &str, more: &str) -> String {
@@ -329,7 +327,7 @@ fn steps() {
 #[test]
 fn scenes_that_a_program_builds_are_checked_too() {
     let spec = || {
-        let square = fetifeti::scene::GridSpec::unit_square([2, 1], [1, 1], [2, 2]);
+        let square = scene::GridSpec::unit_square([2, 1], [1, 1], [2, 2]);
         SceneSpec::tied("built", square.expand())
     };
     let error = |spec: SceneSpec| Scene::new(spec).unwrap_err().to_string();

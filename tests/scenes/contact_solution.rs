@@ -4,8 +4,8 @@
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Side;
-use fetifeti::scene::{Numbering, Scene};
 use fetifeti::substructures::{RowKind, RowLabel, RowSource};
+use scene::{Numbering, Scene};
 
 /// min ½ uᵀKu − fᵀu over B u ≤ g, on the unknowns of the numbering.
 struct Problem {
@@ -189,12 +189,12 @@ impl Problem {
 }
 
 fn example(name: &str) -> Scene {
-    Scene::load(format!("examples/scenes/{name}.toml")).unwrap()
+    Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap()
 }
 
 #[test]
 fn the_model_problem_agrees_with_an_independent_solution() {
-    let text = std::fs::read_to_string("examples/scenes/model_contact.toml").unwrap();
+    let text = std::fs::read_to_string("../../examples/scenes/model_contact.toml").unwrap();
     // (elements, energy, nodes in contact, contact force), from a second implementation.
     for (elements, energy, nodes, force) in [
         (8, -0.259_286_663_187_288_8, 7, 0.25),

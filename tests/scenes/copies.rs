@@ -5,9 +5,9 @@ use crate::support::copies::{Copies, Kind};
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
 use fetifeti::feti::{Adaptive, MethodSettings, Operators, PcType, Precision, Scaling};
-use fetifeti::scene::Scene;
 use fetifeti::substructures::Substructures;
 use fetifeti::FetiFeti;
+use scene::Scene;
 
 const TIED: Copies = Copies {
     kind: Kind::Tetrahedra,

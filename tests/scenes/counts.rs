@@ -1,9 +1,9 @@
 //! Numbers of rows, dofs and vertices of scenes, compared with independently computed ones.
 
 use crate::support::common;
-use fetifeti::mesh::contiguous_share;
-use fetifeti::scene::{Faces, Scene};
 use fetifeti::substructures::{RowKind, Substructures};
+use parallel::contiguous_share;
+use scene::{Faces, Scene};
 use std::collections::{HashMap, HashSet};
 
 /// Rows of B_loc: a fully redundant pair for every two copies of a dof that is not primal.
@@ -110,7 +110,7 @@ fn every_row_is_provided_once_whatever_the_distribution() {
 
 #[test]
 fn rows_that_share_a_dof_share_a_block() {
-    let scene = Scene::load("examples/scenes/unequal_bodies.toml").unwrap();
+    let scene = Scene::load("../../examples/scenes/unequal_bodies.toml").unwrap();
     let problem = scene.substructures(&|_| true).unwrap();
     let mut block_of: HashMap<u64, u64> = HashMap::new();
     for row in &problem.rows {
@@ -147,7 +147,7 @@ fn rows_at(point: [f64; 2], entries: &str) -> usize {
     let text =
         format!("[grid]\nbodies = 2\nsize = 2\nelements = 2\ndirichlet = [\"left\"]\n{entries}");
     let scene = Scene::parse("t.toml", &text).unwrap();
-    let at = |p: &&fetifeti::scene::Point| {
+    let at = |p: &&scene::Point| {
         let first = p.members[0];
         let [x, y, _] = scene.bodies[first.body].mesh().position(first.node);
         [x, y] == point
@@ -248,7 +248,7 @@ fn ten_thousand_bodies_are_no_trouble() {
 
 #[test]
 fn the_rest_of_a_partly_tied_face_is_open() {
-    let scene = Scene::load("examples/scenes/partly_tied.toml").unwrap();
+    let scene = Scene::load("../../examples/scenes/partly_tied.toml").unwrap();
     let rows = scene.rows(&|_| true);
     // 17 nodes on each face, nothing given on them; nine and three are tied.
     assert_eq!(rows.len(), 34);

@@ -1,17 +1,17 @@
 //! The example scenes agree with their comments.
 
-use fetifeti::scene::{Numbering, Scene};
+use scene::{Numbering, Scene};
 use std::collections::HashSet;
 use std::time::Instant;
 
 fn load(name: &str) -> Scene {
-    Scene::load(format!("examples/scenes/{name}.toml")).unwrap()
+    Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap()
 }
 
 #[test]
 fn every_example_is_valid_and_says_what_it_shows() {
     let mut seen = 0;
-    for entry in std::fs::read_dir("examples/scenes").unwrap() {
+    for entry in std::fs::read_dir("../../examples/scenes").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|e| e != "toml") {
             continue;
@@ -45,7 +45,7 @@ fn special_cases_are_special() {
 
 #[test]
 fn the_lee_examples_are_rows_of_table_1() {
-    use fetifeti::scene::Faces;
+    use scene::Faces;
     for (name, faces) in [
         ("lee_column_1", Faces::Whole),
         ("lee_column_2", Faces::MiddleThird),
@@ -114,7 +114,7 @@ fn options_are_handed_on_without_their_dash() {
 
 #[test]
 fn equal_subdomains_have_equal_matrices_to_the_bit() {
-    let scene = Scene::load("examples/scenes/poisson_2x2.toml").unwrap();
+    let scene = Scene::load("../../examples/scenes/poisson_2x2.toml").unwrap();
     let inner: HashSet<Vec<u64>> = (0..scene.n_subdomains())
         .map(|s| scene.subdomain(s).unwrap())
         .filter(|s| s.k.n() == 8 * 8)

@@ -4,18 +4,18 @@ use crate::support::checks::identities;
 use crate::support::session::with_session;
 use crate::support::solid::assembled;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 
 fn load(name: &str) -> Scene {
-    Scene::load(format!("examples/gallery/{name}.toml")).unwrap()
+    Scene::load(format!("../../examples/gallery/{name}.toml")).unwrap()
 }
 
 /// Every file of the gallery is read, with its mesh.
 #[test]
 fn every_model_is_read() {
     let mut names = Vec::new();
-    for entry in std::fs::read_dir("examples/gallery").unwrap() {
+    for entry in std::fs::read_dir("../../examples/gallery").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "toml") {
             let scene = Scene::load(&path).unwrap_or_else(|e| panic!("{e}"));

@@ -3,8 +3,8 @@
 
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 
 /// Bars of unit length, of 2 subdomains each: `a` held at x = 0, `b` from x = 1 on, which a load of 1 by volume pushes
 /// against `a`. `guided` are the sides with one component given.

@@ -110,7 +110,7 @@ fn a_load_along_a_motion_that_no_pivot_shows_is_refused() {
         let problem = scene.substructures(&|_| true).unwrap();
         let said = with_session(move |session| {
             let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
-            Ok::<_, fetifeti::Error>(solver.solve().err().map(|e| e.to_string()))
+            Ok::<_, base::Error>(solver.solve().err().map(|e| e.to_string()))
         });
         let said = said.unwrap().expect("a refusal");
         let expected = format!("and {} more are pushed away for ever", BLOCKS + 1 - 3);

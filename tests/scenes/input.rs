@@ -1,9 +1,9 @@
 //! All mistakes in files, keys and values of scenes, and the one sentence for each.
 
 use crate::support::{rng, scene_message};
-use fetifeti::scene::Scene;
-use fetifeti::Error;
+use base::Error;
 use rng::Rng;
+use scene::Scene;
 use scene_message::{body, check, message, pair};
 
 #[test]
@@ -303,7 +303,7 @@ fn damaged_files_never_panic() {
     let mut random = Rng::new(1);
     let (mut accepted, mut refused) = (0, 0);
     for name in files {
-        let text = std::fs::read_to_string(format!("examples/scenes/{name}.toml")).unwrap();
+        let text = std::fs::read_to_string(format!("../../examples/scenes/{name}.toml")).unwrap();
         let text: Vec<char> = text.chars().collect();
         for _ in 0..2000 {
             let mut damaged = text.clone();

@@ -1,8 +1,8 @@
 //! Bodies that do not fit together, ties without nodes, invalid scenes built by programs; one sentence for each.
 
 use crate::support::scene_message;
-use fetifeti::mesh::BoxMesh;
-use fetifeti::scene::{BodySpec, Field, GridSpec, Scene, SceneSpec};
+use mesh::BoxMesh;
+use scene::{BodySpec, Field, GridSpec, Scene, SceneSpec};
 use scene_message::{body, check, message, pair};
 
 /// Sentences are one line, also where they quote texts of several.

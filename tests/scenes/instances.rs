@@ -3,8 +3,8 @@
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 
 /// What two scenes are compared by: the displacements, all multipliers, their sum by body, and the energy.
 struct Found {

@@ -2,9 +2,9 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::scene_message;
-use fetifeti::fem::Form;
-use fetifeti::scene::Scene;
-use fetifeti::Result;
+use base::Result;
+use elements::form::Form;
+use scene::Scene;
 use scene_message::{check, message};
 
 const BRICK: &str = "[[body]]\nname = \"brick\"\nsize = [2, 1]\nelements = [4, 2]\n";
@@ -45,7 +45,7 @@ fn some_copies_have_more() {
     let scene = scene(&bricks(list, &(more + "[interface]\ndefault = \"free\"\n")));
     let held: Vec<usize> = scene.bodies.iter().map(|b| b.prescribed.len()).collect();
     assert_eq!(held, [0, 10, 10, 0, 0]);
-    let young = |b: &fetifeti::scene::Body| b.spec.rho.as_constant().expect("a number");
+    let young = |b: &scene::Body| b.spec.rho.as_constant().expect("a number");
     let all: Vec<f64> = scene.bodies.iter().map(young).collect();
     assert_eq!(all, [1.0, 1.0, 5.0, 5.0, 5.0]);
     let pressed: Vec<usize> = scene.bodies.iter().map(|b| b.spec.surface.len()).collect();

@@ -3,7 +3,7 @@
 use super::meshes::Model;
 use crate::support::mpi::Scratch;
 use crate::support::surface_mesh::gmsh;
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 const START: &str = "touch over";
 

@@ -3,17 +3,18 @@
 use crate::support::assembled::Assembled;
 use crate::support::qp::Outcome;
 use crate::support::session::with_session;
+use base::Result;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::substructures::{RowSource, SolvedRow};
-use fetifeti::{FetiFeti, Result};
+use fetifeti::FetiFeti;
+use scene::Scene;
 
 fn text(name: &str) -> String {
-    std::fs::read_to_string(format!("examples/scenes/{name}.toml")).unwrap()
+    std::fs::read_to_string(format!("../../examples/scenes/{name}.toml")).unwrap()
 }
 
 fn load(name: &str) -> Scene {
-    Scene::load(format!("examples/scenes/{name}.toml")).unwrap()
+    Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap()
 }
 
 /// The rows and the energy of a scene.

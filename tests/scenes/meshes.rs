@@ -4,11 +4,12 @@ use crate::support::checks::identities;
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
 use crate::support::solid::assembled;
+use base::Error;
 use fetifeti::feti::MethodSettings;
-use fetifeti::mesh::Mesh;
-use fetifeti::scene::Scene;
 use fetifeti::substructures::{SolvedRow, Subdomain};
-use fetifeti::{Error, FetiFeti};
+use fetifeti::FetiFeti;
+use mesh::Mesh;
+use scene::Scene;
 
 /// A mesh of Gmsh's format 2.2: the unit squares [0, n] × [0, 1], cut into 2 m × m triangles each, of first or second
 /// order; square k is the group `b<k>`, and nodes on common edges are shared. The lines x = 0 and x = n are the groups

@@ -3,8 +3,8 @@
 use crate::support::scene_message::message;
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, Solution};
+use scene::Scene;
 
 /// Two blocks, one on the other, under a pressure of 1 on all sides: −1 is the stress everywhere, also on an inclined
 /// common face. `more` are the keys of the joint.

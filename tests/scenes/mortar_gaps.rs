@@ -3,8 +3,8 @@
 
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 
 /// The way of the upper block's top, and the height of both blocks.
 const WAY: f64 = 0.05;

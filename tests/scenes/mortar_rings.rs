@@ -3,8 +3,8 @@
 
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 use serde_json::Value;
 
 /// A quarter of the rings, with 2n × 3n and 2n × 4n elements.

@@ -7,8 +7,8 @@ use std::fmt::Write;
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, Solution};
+use scene::Scene;
 
 /// Two blocks, [0, 2] × [0, 1] × [0, 1] and one above, with an inclined common face, of hexahedra of 20 nodes.
 struct Blocks {

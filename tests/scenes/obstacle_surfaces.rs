@@ -4,8 +4,8 @@ use super::meshes::Model;
 use crate::support::session::with_session;
 use crate::support::surface_mesh::{floor, line};
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, SolvedRow};
+use scene::Scene;
 
 /// The rows of a scene's solution, by place of their nodes.
 fn solve(scene: &Scene) -> Vec<SolvedRow> {

@@ -5,8 +5,8 @@ use crate::support::program::fetifeti;
 use crate::support::sample::{all_cases, sample};
 use crate::support::session::with_session;
 use fetifeti::feti::{MethodSettings, Scaling};
-use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
+use scene::Scene;
 use serde_json::Value;
 use std::fs;
 
@@ -25,7 +25,7 @@ fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
             (solver.facts().scaling, solution.iterations)
         })
     };
-    let stem = "examples/gallery/hip_stem.toml";
+    let stem = "../../examples/gallery/hip_stem.toml";
     let chosen = taken(stem, None);
     assert_eq!(chosen.0, Scaling::Stiffness);
     if all_cases() {
@@ -36,8 +36,8 @@ fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
     assert_eq!(told.0, Scaling::Rho);
     assert_ne!(chosen.1, told.1);
     for file in [
-        "examples/gallery/pin_lug.toml",
-        "examples/scenes/cube_3d.toml",
+        "../../examples/gallery/pin_lug.toml",
+        "../../examples/scenes/cube_3d.toml",
     ] {
         assert_eq!(taken(file, None).0, Scaling::Rho, "{file}");
     }
@@ -47,9 +47,9 @@ fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
 #[test]
 fn the_report_names_the_scaling() {
     let scratch = Scratch::new("scaling");
-    let mesh = fs::canonicalize("examples/gallery/hip_stem.msh").expect("a mesh");
-    let small = "examples/scenes/cube_3d.toml".to_string();
-    let text = fs::read_to_string("examples/gallery/hip_stem.toml").expect("a scene");
+    let mesh = fs::canonicalize("../../examples/gallery/hip_stem.msh").expect("a mesh");
+    let small = "../../examples/scenes/cube_3d.toml".to_string();
+    let text = fs::read_to_string("../../examples/gallery/hip_stem.toml").expect("a scene");
     let text = text.replace("hip_stem.msh", &mesh.to_string_lossy());
     let plain = scratch.file("plain.toml", &text);
     let told = format!("{text}\n[options]\nfetifeti_scaling = \"rho\"\n");

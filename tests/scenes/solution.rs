@@ -3,8 +3,8 @@
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Side;
-use fetifeti::fem::ErrorNorms;
-use fetifeti::scene::{Numbering, Scene};
+use scene::assembly::ErrorNorms;
+use scene::{Numbering, Scene};
 use std::collections::{HashMap, HashSet};
 
 /// Solves the assembled problem and returns the scene's numbering with the solution.
@@ -139,7 +139,7 @@ dirichlet = { right = \"3 + 2*x - 5*y\", top = \"3 + 2*x - 5*y\" }
 #[test]
 fn the_sine_example_has_the_interpolation_size_error() {
     // Leading term of ‖u − u_h‖ in the H¹ seminorm for Q1 on a square mesh: h/√12 (‖u_xx‖² + ‖u_yy‖²)^½.
-    let norms = errors(&Scene::load("examples/scenes/exact_sine.toml").unwrap());
+    let norms = errors(&Scene::load("../../examples/scenes/exact_sine.toml").unwrap());
     let pi2 = std::f64::consts::PI.powi(2);
     let leading = (1.0 / 32.0) / 12.0_f64.sqrt() * (2.0 * (pi2 / 2.0).powi(2)).sqrt();
     assert!(
@@ -160,7 +160,7 @@ fn the_numbering_is_a_bijection_that_merges_exactly_what_is_tied() {
         "one_subdomain",
         "unequal_bodies",
     ] {
-        let scene = Scene::load(format!("examples/scenes/{name}.toml")).unwrap();
+        let scene = Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap();
         let numbering = Numbering::new(&scene);
         let mut position: HashMap<u64, [f64; 3]> = HashMap::new();
         let mut number: HashMap<u64, u64> = HashMap::new();
@@ -212,7 +212,7 @@ fn the_numbering_is_a_bijection_that_merges_exactly_what_is_tied() {
 
 #[test]
 fn partly_tied_faces_leave_slits() {
-    let scene = Scene::load("examples/scenes/lee_column_2.toml").unwrap();
+    let scene = Scene::load("../../examples/scenes/lee_column_2.toml").unwrap();
     let numbering = Numbering::new(&scene);
     // 65² − 4·64 + ... counted by hand: every body has 17² nodes, outer ones are given; each of the 24 faces has
     // nodes at t = 6/16 … 10/16 tied, five of them.

@@ -1,6 +1,6 @@
 //! `spring`: elastic foundations on sides of bodies.
 
-use fetifeti::scene::Scene;
+use scene::Scene;
 
 fn scene(head: &str, keys: &str) -> Scene {
     let text = format!("{head}[[body]]\nname = \"a\"\nelements = 6\nsubdomains = 2\n{keys}");

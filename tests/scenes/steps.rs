@@ -1,7 +1,7 @@
 //! Load steps: factors of loads, gaps and prescribed values.
 
 use crate::support::mpi::Scratch;
-use fetifeti::scene::{Scene, SteppedMesh, Stepping};
+use scene::{Scene, SteppedMesh, Stepping};
 
 const SCENE: &str = "
 [[body]]
@@ -81,7 +81,7 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
         "unequal_bodies",
         "exact_sine",
     ];
-    let files = names.map(|n| Scene::load(format!("examples/scenes/{n}.toml")).unwrap());
+    let files = names.map(|n| Scene::load(format!("../../examples/scenes/{n}.toml")).unwrap());
     for scene in files.into_iter().chain([scene(STEPS)]) {
         let last = scene.n_steps() - 1;
         for index in 0..scene.n_subdomains() {

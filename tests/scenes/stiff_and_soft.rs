@@ -2,8 +2,8 @@
 
 use crate::support::session::with_session;
 use fetifeti::feti::MethodSettings;
-use fetifeti::scene::Scene;
 use fetifeti::{FetiFeti, Solution};
+use scene::Scene;
 
 fn solve(text: &str) -> Solution {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::adaptive::{AdaptiveReport, AdaptiveRun};
+use lab::study::adaptive::{AdaptiveReport, AdaptiveRun};
 use mpi::Scratch;
 use program::run_fetifeti;
 

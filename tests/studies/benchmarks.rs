@@ -3,7 +3,7 @@
 use crate::support::keys::{self, Keys};
 use crate::support::sample::sample;
 use crate::support::{mpi, program};
-use fetifeti::study::benchmarks::{BenchmarksReport, CaseReport};
+use lab::study::benchmarks::{BenchmarksReport, CaseReport};
 use mpi::Scratch;
 use program::run_fetifeti;
 

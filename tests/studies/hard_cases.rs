@@ -3,7 +3,7 @@
 use crate::support::keys::{self, Keys};
 use crate::support::sample::of;
 use crate::support::{mpi, program};
-use fetifeti::study::hard_cases::{trackers, HardCasesReport, Record, Verdict};
+use lab::study::hard_cases::{trackers, HardCasesReport, Record, Verdict};
 use mpi::Scratch;
 use program::run_fetifeti;
 use std::sync::OnceLock;
@@ -106,7 +106,7 @@ fn walls_have_direct_solutions() {
     use crate::support::rng::Rng;
     use crate::support::session::with_session;
     use crate::support::wall::wall;
-    use fetifeti::study::hard_cases::{one, HardCase};
+    use lab::study::hard_cases::{one, HardCase};
     with_session(|session| {
         for seed in 0..4 {
             for jump in [1.0, 1e2, 1e4, 1e6] {
@@ -133,7 +133,7 @@ fn walls_have_direct_solutions() {
 /// Every second case, in the sample every fifth, on two ranks and without spectra.
 #[test]
 fn ranks_do_not_matter() {
-    use fetifeti::study::hard_cases::{cases, one};
+    use lab::study::hard_cases::{cases, one};
     let started = mpi::as_rank(|session, _| {
         for case in cases(true).iter().step_by(of(5, 2)) {
             let record = one(session, case, 0)?;
@@ -167,7 +167,7 @@ fn ranks_do_not_matter() {
 #[test]
 fn a_wrong_answer_is_seen() {
     use crate::support::session::with_session;
-    use fetifeti::study::hard_cases::{cases, one};
+    use lab::study::hard_cases::{cases, one};
     let verdict = with_session(|session| {
         let mut case = cases(true)
             .into_iter()
@@ -184,7 +184,7 @@ fn a_wrong_answer_is_seen() {
 #[test]
 fn a_wrong_force_is_seen() {
     use crate::support::session::with_session;
-    use fetifeti::study::hard_cases::one;
+    use lab::study::hard_cases::one;
     with_session(|session| {
         for mut case in trackers() {
             let Some(known) = &mut case.force else {

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::hertz::{CaseReport, HertzReport};
+use lab::study::hertz::{CaseReport, HertzReport};
 use mpi::Scratch;
 use program::run_fetifeti;
 

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::kappa::KappaReport;
+use lab::study::kappa::KappaReport;
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -54,7 +54,7 @@ fn condition_numbers_are_those_that_were_measured() {
         .iter()
         .filter(|r| r.family == "scalar-2d")
         .collect();
-    let grows = |f: fn(&fetifeti::study::kappa::KappaRow) -> f64| f(plane[1]) / f(plane[0]);
+    let grows = |f: fn(&lab::study::kappa::KappaRow) -> f64| f(plane[1]) / f(plane[0]);
     assert!(grows(|r| r.coarse_corrected.kappa) < 1.7);
     assert!(grows(|r| r.dirichlet.kappa) > 2.0);
 }

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::kernels::{faster, summary, KernelsReport, CASES, WORTH_CHANGING};
+use lab::study::kernels::{faster, summary, KernelsReport, CASES, WORTH_CHANGING};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -52,7 +52,7 @@ fn every_combination_is_measured_and_solves() {
 /// The statement about faster solvers follows from the rows alone.
 #[test]
 fn only_what_is_clearly_faster_is_named() {
-    let row = |solver: &str, default, factor| fetifeti::study::kernels::KernelRow {
+    let row = |solver: &str, default, factor| lab::study::kernels::KernelRow {
         case: "a".into(),
         solver: solver.into(),
         ordering: "nd".into(),

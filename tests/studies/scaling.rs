@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::scaling::{Point, Problem, ScalingReport, Series, RANKS};
+use lab::study::scaling::{Point, Problem, ScalingReport, Series, RANKS};
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 

@@ -3,7 +3,7 @@
 use crate::support::keys::{self, Keys};
 use crate::support::sample::{all_cases, of};
 use crate::support::{mpi, program};
-use fetifeti::study::speed_error::SpeedErrorReport;
+use lab::study::speed_error::SpeedErrorReport;
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 

@@ -1,10 +1,10 @@
 //! Scenes with coefficients in files beside them.
 
 use super::mpi::Scratch;
-use fetifeti::mesh::places;
-use fetifeti::scene::Scene;
-use fetifeti::Error;
+use base::Error;
+use mesh::places;
 use png::{BitDepth, ColorType};
+use scene::Scene;
 
 /// The coefficients of all elements of a scene of one grid, x running fastest over the whole grid.
 pub fn elements(scene: &Scene, bodies: [usize; 3], pick: impl Fn(usize) -> Vec<f64>) -> Vec<f64> {

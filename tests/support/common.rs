@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use base::linalg::csr::Csr;
 use fetifeti::substructures::{
     InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
 };
-use fetifeti::Csr;
 
 /// N_b × N_b bodies of N_s × N_s subdomains of n × n bilinear elements on the unit square, held on its whole boundary.
 #[derive(Clone, Copy)]

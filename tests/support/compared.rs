@@ -3,7 +3,7 @@
 use super::keys::{self, Keys};
 use super::mpi::{Output, Scratch};
 use super::program::fetifeti;
-use fetifeti::report::json::{CompareReport, CompareRow};
+use report::json::{CompareReport, CompareRow};
 
 /// Required keys of a report of `compare`.
 pub const KEYS: Keys = &[

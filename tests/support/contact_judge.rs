@@ -2,12 +2,12 @@
 
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
+use base::{Error, Result};
 use fetifeti::contact::{ContactStart, ContactType};
-use fetifeti::gather_all;
-use fetifeti::petsc::Session;
-use fetifeti::scene::Scene;
-use fetifeti::{Error, Result};
 use fetifeti::{FetiFeti, MethodSettings, ProjectorKind, Settings};
+use parallel::exchange::gather_all;
+use petsc::Session;
+use scene::Scene;
 use std::collections::HashMap;
 
 /// The loop and its start, the number of rows from which a block is scaled with a sparse factorisation, and the

@@ -2,17 +2,18 @@
 //! compared with.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
+use elements::cell::{self, Element, Material};
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use fetifeti::fem::cell::{self, Element, Material};
-use fetifeti::fem::SubdomainMesh;
 use fetifeti::feti::MethodSettings;
-use fetifeti::petsc::{Options, Session};
-use fetifeti::scene::{Numbering, Scene};
 use fetifeti::FetiFeti;
 use fetifeti::Solution;
+use petsc::{Options, Session};
+use scene::assembly::SubdomainMesh;
+use scene::{Numbering, Scene};
 
 /// Solution of an assembled scene, torn by subdomain.
 pub struct Direct {
@@ -86,7 +87,11 @@ impl Direct {
     }
 
     pub fn example(name: &str) -> Direct {
-        Direct::new(Scene::load(format!("examples/scenes/{name}.toml")).unwrap())
+        // Tests of packages in the root of the repository and in crates/ ask for it.
+        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = package.ancestors().find(|d| d.join("Cargo.lock").is_file());
+        let scenes = root.expect("a workspace").join("examples/scenes");
+        Direct::new(Scene::load(scenes.join(format!("{name}.toml"))).unwrap())
     }
 
     /// Square of the energy norm of nodal functions, torn by subdomain, element by element.

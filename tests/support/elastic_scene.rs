@@ -3,7 +3,7 @@
 use super::assembled::{Assembled, Reference};
 use super::qp::Outcome;
 use super::rng::Rng;
-use fetifeti::scene::Scene;
+use scene::Scene;
 use std::fmt::Write;
 
 /// A scene and its outcome.

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fetifeti::petsc::Session;
+use petsc::Session;
 
 /// The result of a run.
 pub struct Output {
@@ -67,7 +67,10 @@ pub fn of_petsc(program: &str) -> Command {
 fn patient() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     PATH.get_or_init(|| {
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/patient.c");
+        // Packages with such tests lie in the root of the repository, and in crates/.
+        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = package.ancestors().find(|d| d.join("Cargo.lock").is_file());
+        let source = root.expect("a workspace").join("tests/support/patient.c");
         let own = std::env::current_exe().expect("the test knows its own path");
         let (name, pid) = ("patient.so", std::process::id());
         let fresh = own.with_file_name(format!("{name}.{pid}"));
@@ -142,7 +145,7 @@ pub struct Ranks {
 /// `work` must be a closure in the test itself: the name of its type contains the name of the test.
 pub fn as_rank<W>(work: W) -> Ranks
 where
-    W: FnOnce(&Session, &str) -> fetifeti::Result<()>,
+    W: FnOnce(&Session, &str) -> base::Result<()>,
 {
     Ranks::new::<W>(|case| {
         let session = Session::new(&[], "").expect("PETSc starts");

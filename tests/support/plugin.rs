@@ -93,7 +93,7 @@ impl Program {
 
     /// One of our sources, from tests/plugin.
     pub fn own(compiler: &str, scratch: &Scratch, name: &str) -> Program {
-        let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plugin");
+        let dir = Path::new(env!("FETIFETI_ROOT")).join("tests/plugin");
         Program::compile(compiler, scratch, &dir.join(name), &[])
     }
 
@@ -109,7 +109,7 @@ impl Program {
         path: &str,
         options: &[String],
     ) -> Program {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = Path::new(env!("FETIFETI_ROOT"));
         let (library, headers) = (library(), root.join("wrappers"));
         let dir = Path::new(&library)
             .parent()
@@ -125,7 +125,7 @@ impl Program {
 
     /// As `linked`, in Fortran with the module of wrappers/fetifeti.f90.
     pub fn fortran_with_module(scratch: &Scratch, path: &str) -> Program {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let root = Path::new(env!("FETIFETI_ROOT"));
         let module = root.join("wrappers/fetifeti.f90").display().to_string();
         let object = scratch.path("module.o");
         let out = Command::new("mpif90")

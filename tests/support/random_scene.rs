@@ -6,9 +6,9 @@
 use super::assembled::{Assembled, Reference};
 use super::qp::Outcome;
 use super::rng::Rng;
-use fetifeti::fem::Quadrature;
-use fetifeti::mesh::BoxMesh;
-use fetifeti::scene::{
+use elements::q1::Quadrature;
+use mesh::BoxMesh;
+use scene::{
     BodySpec, By, ByDefault, ContactSpec, Expr, Extent, Field, Load, ObstacleSpec, Pair, Profile,
     Region, Scene, SceneSpec, TieSpec,
 };

@@ -1,7 +1,7 @@
 //! The program's message for a wrong scene, and scenes for such tests.
 
-use fetifeti::scene::Scene;
-use fetifeti::Error;
+use base::Error;
+use scene::Scene;
 
 /// The message for the scene `text`.
 pub fn message(text: &str) -> String {

@@ -1,6 +1,6 @@
 //! One PETSc for all tests of a process.
 
-use fetifeti::Session;
+use petsc::Session;
 use std::panic::{catch_unwind, resume_unwind, AssertUnwindSafe};
 use std::sync::mpsc::{channel, Sender};
 use std::sync::{Mutex, OnceLock};

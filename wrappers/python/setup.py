@@ -59,7 +59,7 @@ class Build(build_py):
             return
         if not built(LIBRARY).is_file():
             # The program needs more than the library: `make install` makes both.
-            cargo = ["cargo", "build", "--release", "--lib", "--no-default-features"]
+            cargo = ["cargo", "build", "--release", "--package", "fetifeti"]
             subprocess.run(cargo, cwd=ROOT, check=True)
         for file in (LIBRARY, PROGRAM):
             if built(file).is_file():

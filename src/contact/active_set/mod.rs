@@ -26,9 +26,9 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
-use crate::petsc::{Stopped, Vec as PetscVec};
 use crate::status::Status;
 use crate::Result;
+use petsc::{Stopped, Vec as PetscVec};
 
 /// The end of the loop.
 pub(super) enum Ended {

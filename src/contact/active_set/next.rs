@@ -5,8 +5,8 @@ use crate::contact::judge;
 use crate::contact::restore::restore;
 use crate::contact::settle::settle;
 use crate::feti::operators::dual::Dual;
-use crate::parallel::exchange::any;
 use crate::Result;
+use parallel::exchange::any;
 
 /// Steps without progress after which the loop hands over.
 const PATIENCE: usize = 4;

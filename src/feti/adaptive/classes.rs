@@ -12,8 +12,8 @@ use mpi::traits::Communicator;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{any, exchange_words};
 use crate::substructures::{Subdomain, Substructures};
+use parallel::exchange::{any, exchange_words};
 
 /// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
 /// or from jumps that the weights alone deal with.

@@ -2,15 +2,15 @@
 
 use std::sync::{Arc, Mutex};
 
-use crate::cholesky::interior::{LocalSolver, NoFactor};
-use crate::cholesky::symbolic::Keep;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
+use cholesky::interior::{LocalSolver, NoFactor};
+use cholesky::symbolic::Keep;
+use parallel::team::Team;
 
 /// Gives the subdomains the constraints that [`find`](super::constraints::find) added. Subdomains that were equal stay
 /// equal, but a turned copy with a constraint gets operators of its own. The old operators are dropped one by one, so

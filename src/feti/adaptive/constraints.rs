@@ -9,17 +9,19 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::classes::{self, Class};
-use super::pencil::{self, Part};
+use super::classes::Class;
+use super::pencil::Part;
+use crate::feti::adaptive::classes;
+use crate::feti::adaptive::pencil;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::{multiply, Dense};
-use crate::parallel::exchange::{any, exchange_words, sum_all};
-use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
+use base::linalg::dense::{multiply, Dense};
+use parallel::exchange::{any, exchange_words, sum_all};
+use parallel::team::Team;
 
 /// Finds the constraints that bring the eigenvalues of every class below τ and adds them to `jump.averages`. The
 /// entries of `jump` are on interface positions. Returns the number of constraints of each body over all ranks; the

@@ -15,7 +15,7 @@
 use std::collections::HashMap;
 
 use crate::feti::subdomain::basis::Basis;
-use crate::linalg::dense::{self, Dense, Scratch};
+use base::linalg::dense::{self, Dense, Scratch};
 
 /// Energies below this part of a primal dof's stiffness are rounding. They are replaced by this part.
 const FREE: f64 = 1e-12;

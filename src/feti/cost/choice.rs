@@ -13,8 +13,8 @@ use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{CoarseFunctions, PcType, Scaling};
-use crate::parallel::exchange::{sum_all, total};
 use crate::substructures::Substructures;
+use parallel::exchange::{sum_all, total};
 
 /// Columns that each neighbour adds to those that a subdomain sees, relative to the subdomain's own columns, in the
 /// plane and in space. The neighbour's other columns are shared already.

@@ -10,14 +10,14 @@
 //! exact. The seconds f, d, e per operation are measured (`fetifeti study kernels` measures them again). They are the
 //! same on every machine, so that runs can be repeated.
 
-use crate::cholesky::symbolic::Keep;
-use crate::cholesky::symbolic::Symbolic;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
 use crate::feti::subdomain::equal::Likeness;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
+use cholesky::symbolic::Keep;
+use cholesky::symbolic::Symbolic;
+use parallel::team::Team;
 
 /// Seconds per multiplication and addition in dense fronts.
 pub(crate) const FLOP: f64 = 8e-11;
@@ -84,7 +84,6 @@ pub struct Kind<'a> {
 
 impl Kind<'_> {
     /// Entries of the sparse factors in the given form.
-    #[cfg(feature = "cli")]
     pub fn factor_entries(&self, form: OperatorForm) -> usize {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         match form {
@@ -249,7 +248,3 @@ pub fn usual_memory(ranks: usize) -> f64 {
     // Four gigabytes if the machine does not tell.
     0.5 * kilobytes.map_or(4e9, |k| 1024.0 * k) / ranks as f64
 }
-
-#[cfg(test)]
-#[path = "../../../tests/inside/feti/cost/forms.rs"]
-mod tests;

@@ -2,6 +2,5 @@
 
 pub mod choice;
 pub mod forms;
-#[cfg(feature = "cli")]
 pub mod sizes;
 pub mod variation;

@@ -13,12 +13,12 @@ use crate::feti::projector::planned::free_motions;
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
 use crate::feti::subdomain::equal;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::linalg::dense::Dense;
-use crate::parallel::exchange::{exchange_words, highest, sum_all};
-use crate::parallel::team::Team;
-use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
+use base::linalg::dense::Dense;
+use parallel::exchange::{exchange_words, highest, sum_all};
+use parallel::team::Team;
+use petsc::Session;
 
 /// Sizes over all ranks.
 #[derive(Debug, Clone)]

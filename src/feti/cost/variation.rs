@@ -2,8 +2,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::parallel::exchange::max_all;
 use crate::substructures::Substructures;
+use parallel::exchange::max_all;
 
 /// Coefficients jump inside a body if the largest is more than this many times the smallest.
 pub const JUMPS: f64 = 1e2;

@@ -13,11 +13,11 @@
 use super::pencil::Pencil;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::columns::KernelColumns;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use parallel::exchange::sum_all;
+use petsc::Vec as PetscVec;
 
 /// f_i of all bodies.
 #[derive(Default)]

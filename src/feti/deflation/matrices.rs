@@ -7,17 +7,18 @@ use mpi::topology::SimpleCommunicator;
 
 use super::balance::Balance;
 use super::panels::Panels;
-use super::sparse::{self, Sparse};
+use super::sparse::Sparse;
+use crate::feti::deflation::sparse;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
 use crate::feti::projector::rows::Rows;
 use crate::feti::projector::sweep::{self, Column};
 use crate::feti::settings::ProjectorKind;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use parallel::exchange::sum_all;
+use petsc::{Session, Vec as PetscVec};
 
 /// Vectors of neighbouring bodies may contain the same mode. A vector counts as independent if the part of it that is
 /// orthogonal to the others is larger than this, relative to the vector and squared in the F-norm. The rounding of F W

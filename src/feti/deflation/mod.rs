@@ -30,14 +30,15 @@ use std::time::Instant;
 use super::cost::variation::JUMPS;
 use super::operators::dual::Dual;
 use super::projector::graph::BodyGraph;
-use super::projector::sweep::{self, Column};
+use super::projector::sweep::Column;
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
-use crate::parallel::exchange::total;
+use crate::feti::projector::sweep;
 use crate::substructures::Substructures;
 use crate::Result;
 use balance::Balance;
 use matrices::Matrices;
+use parallel::exchange::total;
 use pencil::Pencil;
 use whole::Whole;
 

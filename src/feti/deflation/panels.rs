@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::feti::projector::sweep::Column;
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// Consecutive columns with the same reach.
 #[derive(Debug, Default)]

@@ -15,12 +15,12 @@ use std::ops::Range;
 use super::search::Pencils;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use parallel::exchange::sum_all;
+use petsc::Vec as PetscVec;
 
 /// The pencils of all bodies. A vector holds the rows of one body after those of another, colour after colour.
 pub struct Pencil<'a> {

@@ -11,10 +11,10 @@ use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gtg::Side;
 use crate::feti::projector::refined::Refined;
 use crate::feti::projector::shape::{Shape, Sharing};
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{gather_all, sum_all};
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{gather_all, sum_all};
 
 /// E as a sparse matrix, factored.
 pub struct Sparse {

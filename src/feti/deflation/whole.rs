@@ -14,9 +14,9 @@ use std::ops::Range;
 use super::search::Pencils;
 use super::Deflation;
 use crate::feti::operators::dual::Dual;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use parallel::exchange::sum_all;
+use petsc::Vec as PetscVec;
 
 /// The pencil of the whole problem.
 pub struct Whole<'a> {

@@ -8,8 +8,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use std::hash::{BuildHasherDefault, Hasher};
 
-use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
+use parallel::exchange::exchange_words;
 
 /// Multiplicative hashing: dof numbers are not chosen by an adversary.
 #[derive(Debug, Default, Clone, Copy)]

@@ -10,9 +10,9 @@ use mpi::traits::Communicator;
 
 use super::sharing::Sharing;
 use crate::feti::settings::Primal;
-use crate::parallel::exchange::exchange_words;
 use crate::substructures::{Entity, Subdomain, Substructures};
 use crate::{Error, Result};
+use parallel::exchange::exchange_words;
 
 /// A primal constraint that several subdomains of a body share: the mean over some dofs, or another functional of them.
 #[derive(Debug, Clone, PartialEq)]

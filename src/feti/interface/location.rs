@@ -5,9 +5,9 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
-use crate::parallel::exchange::{any, exchange_words};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
+use parallel::exchange::{any, exchange_words};
 
 /// Where a subdomain is.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,13 +9,14 @@ use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
 use super::candidates::{candidates, DofMap};
-use super::entities::{self, Average};
+use super::entities::Average;
 use super::location::{homes, Home, Location, Locations};
+use crate::feti::interface::entities;
 use crate::feti::settings::Primal;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange, exchange_words, Record};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
+use base::linalg::sorted::distinct;
+use parallel::exchange::{exchange, exchange_words, Record};
 
 /// One subdomain's instance of a body dof.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,10 +9,10 @@ use super::coupled::Coupled;
 use super::dependent;
 use super::scaling::Known;
 use crate::feti::interface::sharing::{Copy, Sharing};
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::Record;
 use crate::substructures::Substructures;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::exchange::Record;
 
 /// B of a block.
 #[derive(Debug)]

@@ -19,9 +19,9 @@ use super::operator::Jump;
 use crate::feti::adaptive::classes::{self, Class};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::{self, Dense, Scratch};
-use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
+use base::linalg::dense::{self, Dense, Scratch};
+use parallel::exchange::exchange_words;
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(

@@ -2,8 +2,8 @@
 
 use super::blocks::Block;
 use super::scaling;
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
+use base::linalg::dense::Dense;
+use base::linalg::nnls::nnls;
 
 /// Other multipliers of rows that depend on each other.
 pub struct Others {

@@ -1,7 +1,7 @@
 //! The rows that a rank sees: its own, and those of other ranks that touch its subdomains.
 
 use super::blocks::Entry;
-use crate::linalg::sorted::distinct;
+use base::linalg::sorted::distinct;
 
 /// The rows that have entries, numbered upwards: a table for the rank's own rows, a list for the few others.
 pub(super) struct GhostRows {

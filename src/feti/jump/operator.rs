@@ -9,7 +9,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
-use super::blocks::{self, Block, Entry};
+use super::blocks::{Block, Entry};
 use super::columns::{JumpEntries, JumpEntry};
 use super::coupled::slots::Slots;
 use super::coupled::MANY;
@@ -19,8 +19,9 @@ use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, Sharing};
-use crate::parallel::exchange::{exchange, offsets, total};
+use crate::feti::jump::blocks;
 use crate::substructures::{RowKind, Substructures};
+use parallel::exchange::{exchange, offsets, total};
 
 /// The dual space and its operators.
 #[derive(Debug, Default)]

@@ -8,8 +8,8 @@ use std::borrow::Cow;
 
 use rustc_hash::FxHashMap;
 
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
 
 /// Rank tolerance of a block: singular values below this, relative to the largest, are zero. Entries of B are of order
 /// one, and nonzero singular values are far larger.

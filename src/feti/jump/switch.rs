@@ -5,7 +5,7 @@ use mpi::traits::Communicator;
 
 use super::blocks::Entry;
 use super::operator::Jump;
-use crate::parallel::exchange::exchange;
+use parallel::exchange::exchange;
 
 impl Jump {
     /// Z^k, with the inequality rows that hold because they follow from others. Around a cross point several sets of

@@ -40,7 +40,7 @@ pub fn weights(problem: &Substructures, scaling: Scaling, gamma: f64) -> Vec<Vec
 }
 
 /// Whether ρ changes from dof to dof without a pattern and by moderate factors.
-fn is_noise(sub: &Subdomain) -> bool {
+pub fn is_noise(sub: &Subdomain) -> bool {
     let (low, high) = sub
         .rho
         .iter()
@@ -76,7 +76,3 @@ fn same_place(sub: &Subdomain, i: usize, j: usize) -> bool {
     let places = sub.coordinates.as_ref();
     places.is_some_and(|x| x[i] == x[j])
 }
-
-#[cfg(test)]
-#[path = "../../../tests/inside/feti/jump/weights.rs"]
-mod tests;

@@ -1,12 +1,12 @@
 //! Displacements that satisfy all rows and multipliers that push everywhere, near those of a solution.
 
 use super::loads::Loads;
-use crate::cholesky::lanes::LANES;
 use crate::feti::jump::operator::Jump;
 use crate::feti::method::LinearMethod;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{any, max_all};
 use crate::Result;
+use cholesky::lanes::LANES;
+use parallel::exchange::{any, max_all};
 
 /// Rounds in which rows are closed, and in which multipliers that pull are taken away.
 const ROUNDS: usize = 12;

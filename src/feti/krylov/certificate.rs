@@ -5,11 +5,11 @@ use super::leftover::Leftover;
 use crate::feti::jump::columns::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::strained::strained;
-use crate::parallel::exchange::{max_all, min_all, sum_all};
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
+use base::linalg::strained::strained;
+use parallel::exchange::{max_all, min_all, sum_all};
+use petsc::Vec as PetscVec;
 
 /// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
 const CREDIBLE: f64 = 1e4;

@@ -27,8 +27,8 @@ use super::recovery::LinearSolution;
 use super::refinement::remainder;
 use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
-use crate::parallel::exchange::{any, max_all, sum_all};
 use crate::Result;
+use parallel::exchange::{any, max_all, sum_all};
 
 /// Better pairs are made until the upper bound is at most this many times the lower one.
 const CLOSE: f64 = 2.0;

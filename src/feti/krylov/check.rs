@@ -5,10 +5,10 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::parallel::exchange::max_all;
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use parallel::exchange::max_all;
+use petsc::Vec as PetscVec;
 
 /// (name, relative defect) of each identity that applies to the problem. Collective.
 pub(crate) fn identities(

@@ -6,9 +6,9 @@ use super::shells;
 use super::system::System;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
-use crate::parallel::exchange::any;
-use crate::petsc::extreme_eigenvalues;
 use crate::Result;
+use parallel::exchange::any;
+use petsc::extreme_eigenvalues;
 
 /// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies
 /// within the residual, so κ is good to 1e-6; in fact the error is about the residual's square. A much smaller
@@ -50,7 +50,7 @@ pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
 }
 
 /// A vector rich in all eigenvectors, without random state.
-fn start_vector(dual: &Dual) -> Result<crate::petsc::Vec> {
+fn start_vector(dual: &Dual) -> Result<petsc::Vec> {
     let start = dual.multipliers()?;
     let jump = &dual.stiffness.jump;
     for (i, v) in start.array_mut()?.iter_mut().enumerate() {

@@ -15,9 +15,9 @@ use super::refinement::remainder;
 use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
-use crate::linalg::csr::Csr;
-use crate::parallel::exchange::sum_all;
 use crate::Result;
+use base::linalg::csr::Csr;
+use parallel::exchange::sum_all;
 
 /// Residuals inside subdomains are left out if this many times their norm is no error that counts. It bounds the
 /// inverse of the smallest singular value of an interior problem that is scaled to unit diagonal.

@@ -5,9 +5,9 @@ use super::system::System;
 use super::tally::Start;
 use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
-use crate::petsc::{ConvergedReason, Ksp, LargeEigenvalue, Stopped, Vec as PetscVec};
 use crate::status::Status;
 use crate::{Error, Result};
+use petsc::{ConvergedReason, Ksp, LargeEigenvalue, Stopped, Vec as PetscVec};
 
 /// An iteration is no longer broken off if its residual is less than this many times its tolerance.
 const NEARLY: f64 = 30.0;

@@ -4,12 +4,12 @@
 //!     g = f_Γ − K_ΓI K_II⁻¹ f_I,      e = Rᵀ g
 //! ```
 
-use crate::cholesky::lanes::LANES;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::highest;
 use crate::substructures::Substructures;
+use cholesky::lanes::LANES;
+use parallel::exchange::highest;
 
 /// The data of the right-hand side of the dual problem.
 pub struct Loads {

@@ -11,13 +11,13 @@ use super::iterate::Run;
 use super::leftover::Leftover;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
-use crate::cholesky::lanes::LANES;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::status::Status;
 use crate::Result;
+use cholesky::lanes::LANES;
 
 /// The solution of the linear method; vectors are this rank's part.
 #[derive(Debug, Clone)]

@@ -14,11 +14,11 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::{any, sum_all};
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use parallel::exchange::{any, sum_all};
+use petsc::Vec as PetscVec;
 
 /// A direction is dropped if the others represent it up to this relative error.
 const DEPENDENT: f64 = 1e-12;
@@ -130,7 +130,7 @@ impl Recycle {
 }
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {
-    crate::linalg::dense::dot(x, y)
+    base::linalg::dense::dot(x, y)
 }
 
 fn add(columns: &[Vec<f64>], c: &[f64], factor: f64, y: &mut [f64]) {

@@ -20,12 +20,12 @@ use super::recovery::{displacements, LinearSolution};
 use super::residual::{Iterate, ROUNDING};
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
-use crate::linalg::strained::strained;
-use crate::parallel::exchange::total;
-use crate::petsc::Vec as PetscVec;
 use crate::status::Status;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
+use base::linalg::strained::strained;
+use parallel::exchange::total;
+use petsc::Vec as PetscVec;
 
 /// Tolerances below this may be beyond the accuracy of the operators.
 pub const TIGHT: f64 = 1e-9;

@@ -7,9 +7,9 @@
 use super::loads::Loads;
 use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
-use crate::parallel::exchange::{highest, total};
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use parallel::exchange::{highest, total};
+use petsc::Vec as PetscVec;
 
 /// A residual below this fraction of the displacements it was formed from is rounding; there is nothing left to iterate
 /// on.

@@ -15,11 +15,11 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::motion::Motion;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::sorted::distinct;
-use crate::linalg::union_find::UnionFind;
-use crate::parallel::exchange::{min_all, sum_all};
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::sorted::distinct;
+use base::linalg::union_find::UnionFind;
+use parallel::exchange::{min_all, sum_all};
 
 /// Motions of bodies that move together.
 struct Group {

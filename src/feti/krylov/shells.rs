@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use super::system::System;
-use crate::petsc::{Mat, ShellMat, ShellPc, Vec as PetscVec};
 use crate::Result;
+use petsc::{Mat, ShellMat, ShellPc, Vec as PetscVec};
 
 /// A product: (system, x, y) with y ← A x.
 type Product = fn(&System, &PetscVec, &PetscVec) -> Result<()>;

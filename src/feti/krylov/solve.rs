@@ -18,10 +18,10 @@ use super::refinement::STEPS;
 use super::residual::{Iterate, ROUNDING};
 use super::target::{to_the_end, Target};
 use crate::feti::method::LinearMethod;
-use crate::parallel::exchange::highest;
-use crate::petsc::Stopped;
 use crate::status::Status;
 use crate::Result;
+use parallel::exchange::highest;
+use petsc::Stopped;
 
 /// A run that breaks down has made progress if the residual became less than this part of its first value.
 const PROGRESS: f64 = 0.5;

@@ -13,9 +13,9 @@ use super::tally::Tally;
 use crate::feti::deflation::matrices::Matrices;
 use crate::feti::deflation::Deflation;
 use crate::feti::operators::dual::Dual;
-use crate::petsc::{signals, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
+use petsc::{signals, Session, Vec as PetscVec};
 
 /// Of so many products one asks whether a signal has come.
 const HEED: usize = 4;

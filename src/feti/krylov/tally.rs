@@ -1,11 +1,9 @@
 //! Communication and time of the Krylov iterations of a solver, over all ranks.
 
-use crate::parallel::clock::{self, Times};
-use crate::parallel::exchange::{max_all, sum_all};
-use crate::parallel::traffic::{self, Traffic};
-use crate::petsc;
 use mpi::topology::SimpleCommunicator;
-#[cfg(feature = "cli")]
+use parallel::clock::{self, Times};
+use parallel::exchange::{max_all, sum_all};
+use parallel::traffic::{self, Traffic};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -74,8 +72,7 @@ impl Tally {
 }
 
 /// A quantity per iteration.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct PerIteration {
     /// Sum over all ranks.
     pub sum: f64,
@@ -84,20 +81,19 @@ pub struct PerIteration {
 }
 
 /// Communication per Krylov iteration: means over the iterations. The beginning and the end of a run are included.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Communication {
     /// Messages from rank to rank.
-    #[cfg_attr(feature = "cli", serde(rename = "messages_per_iteration"))]
+    #[serde(rename = "messages_per_iteration")]
     pub messages: PerIteration,
     /// Bytes of the messages.
-    #[cfg_attr(feature = "cli", serde(rename = "bytes_per_iteration"))]
+    #[serde(rename = "bytes_per_iteration")]
     pub bytes: PerIteration,
     /// All-reduces; every rank takes part in each.
-    #[cfg_attr(feature = "cli", serde(rename = "reductions_per_iteration"))]
+    #[serde(rename = "reductions_per_iteration")]
     pub reductions: f64,
     /// Bytes that a rank contributes to the all-reduces.
-    #[cfg_attr(feature = "cli", serde(rename = "reduced_bytes_per_iteration"))]
+    #[serde(rename = "reduced_bytes_per_iteration")]
     pub reduced_bytes: f64,
 }
 

@@ -3,8 +3,8 @@
 use super::refinement::TIGHT;
 use super::residual::ROUNDING;
 use crate::feti::method::LinearMethod;
-use crate::petsc::Ksp;
 use crate::Result;
+use petsc::Ksp;
 
 /// The norm of the residual, over `rows` rows, at which the iteration ends. It is relative to the smaller of two
 /// numbers: `reference`, the norm of Pᵀ r at λ₀, and the norm of displacements of size `length` (0 while they are not

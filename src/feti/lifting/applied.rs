@@ -6,9 +6,9 @@ use super::averaging::{Averaging, Transposition};
 use super::interpolation::Functions;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::primal::space::PrimalSpace;
-use crate::parallel::halo::{numbered, Halo};
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use parallel::halo::{numbered, Halo};
+use petsc::{Session, Vec as PetscVec};
 
 /// The parts of Z_c on this rank.
 pub(crate) struct Applied {

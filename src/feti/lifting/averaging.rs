@@ -14,12 +14,12 @@ use mpi::traits::Communicator;
 
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, offsets};
-use crate::parallel::halo::Halo;
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{exchange_words, offsets};
+use parallel::halo::Halo;
+use petsc::Vec as PetscVec;
 
 /// A dual dof of a subdomain that other subdomains of its body share.
 struct Place {

@@ -14,7 +14,7 @@ use std::ops::Range;
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::{multiply, Dense};
+use base::linalg::dense::{multiply, Dense};
 
 /// An order of Γ and of the columns in which Z_c is a matrix of few blocks.
 struct Groups {

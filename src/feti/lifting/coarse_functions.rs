@@ -12,10 +12,10 @@ use mpi::traits::Communicator;
 use super::interpolation::Functions;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::exchange::exchange_words;
 
 /// The recipe of Z_c on one subdomain.
 pub(crate) struct Recipe {

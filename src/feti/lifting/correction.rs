@@ -29,11 +29,11 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::operators::work::{Columns, Work};
 use crate::feti::settings::CoarseFunctions;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{any, exchange_words, sum_all};
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use parallel::clock::{self, Phase};
+use parallel::exchange::{any, exchange_words, sum_all};
+use petsc::Vec as PetscVec;
 
 /// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
 pub struct Lifting {
@@ -43,7 +43,6 @@ pub struct Lifting {
     /// Rank of A and its order (columns that are not zero), over this rank's bodies.
     pub rank_and_order: (usize, usize),
     /// Σ n_Γ² · columns of Z_c over the blocks of A that this rank has made; a study reads it.
-    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     pub products: f64,
 }
 

@@ -4,12 +4,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
-use crate::linalg::sorted::distinct;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
+use base::linalg::sorted::distinct;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
 
 /// Number of columns below which a dense factor is used: it stays in the cache.
 const MANY: usize = 200;

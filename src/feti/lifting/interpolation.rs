@@ -11,9 +11,9 @@ use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::CoarseFunctions;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
 use crate::substructures::Subdomain;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
 
 /// An average is not interpolated if the kernels are wrong by more than this, relative to their size.
 const WRONG: f64 = 1e-8;

@@ -11,9 +11,9 @@ use super::stored::Pair;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::linalg::dense::{multiply, Dense};
-use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
+use base::linalg::dense::{multiply, Dense};
+use base::linalg::sorted::distinct;
 
 /// Number of subdomains of a body whose blocks are added up before the sum is sent to the rank that factors A.
 const GROUP: usize = 32;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::operators::work::{Columns, Work};
-use crate::linalg::dense::Dense;
-use crate::parallel::halo::{numbered, Halo};
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use base::linalg::dense::Dense;
+use parallel::halo::{numbered, Halo};
+use petsc::{Session, Vec as PetscVec};
 
 /// Z_c and Y = S Z_c on one subdomain, n_Γ × its columns.
 pub(crate) struct Pair {

@@ -7,9 +7,9 @@ use crate::feti::jump::blocks::Form;
 use crate::feti::jump::columns::ScaledGhosts;
 use crate::feti::jump::coupled::Coupled;
 use crate::feti::jump::operator::Jump;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 
 /// The dofs of coupled blocks on their way between the owners of the blocks and the subdomains.
 pub struct Coupling {

@@ -9,10 +9,10 @@ use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::projector::gtg::Gtg;
 use crate::feti::projector::natural::NaturalCoarse;
-use crate::parallel::exchange::total;
-use crate::petsc::{Event, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
+use parallel::exchange::total;
+use petsc::{Event, Vec as PetscVec};
 
 /// F, M⁻¹ and P. Vectors of multipliers have one entry for each row of B that this rank owns.
 pub struct Dual {

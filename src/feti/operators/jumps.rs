@@ -2,9 +2,9 @@
 
 use super::stiffness::Stiffness;
 use super::work::Work;
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use petsc::Vec as PetscVec;
 
 impl Stiffness {
     /// out ← B y, with the displacements y in `work`. Collective.

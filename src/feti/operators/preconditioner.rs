@@ -21,13 +21,13 @@ use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::single::Single;
-use crate::parallel::exchange::{highest, lowest};
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::single::Single;
+use parallel::exchange::{highest, lowest};
+use petsc::Vec as PetscVec;
 
 /// The preconditioner of the dual problem.
 pub struct Preconditioner {

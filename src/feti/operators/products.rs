@@ -10,8 +10,8 @@ use std::cell::{Ref, RefCell};
 use super::work::Work;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::linalg::dense::Dense;
-use crate::parallel::team::Team;
+use base::linalg::dense::Dense;
+use parallel::team::Team;
 
 /// Number of vectors side by side: enough to keep the arithmetic units busy, few enough to leave work for several
 /// threads.

@@ -16,8 +16,8 @@
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::scaling;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
 
 /// C, and X for the rows that hold.
 pub struct Springs {

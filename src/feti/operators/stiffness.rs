@@ -23,11 +23,11 @@ use crate::feti::primal::space::PrimalSpace;
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::linalg::dense::Dense;
-use crate::parallel::halo::Halo;
-use crate::parallel::team::Team;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use base::linalg::dense::Dense;
+use parallel::halo::Halo;
+use parallel::team::Team;
+use petsc::{Session, Vec as PetscVec};
 
 /// S̃⁺, which depends on the matrices alone, and the jump operator.
 pub struct Stiffness {

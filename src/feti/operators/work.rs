@@ -1,7 +1,7 @@
 //! Buffers for the vectors of one subdomain.
 
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// Buffers of one subdomain on its interface Γ.
 #[derive(Debug, Clone, Default)]

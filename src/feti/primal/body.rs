@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
+use base::linalg::csr::Csr;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
 
 /// A pattern and its analysis.
 #[derive(Debug, Clone)]

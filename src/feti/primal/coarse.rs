@@ -6,12 +6,12 @@
 use super::body::{Body, Pattern};
 use super::matrix::PrimalMatrix;
 use super::space::PrimalSpace;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::any;
-use crate::parallel::halo::Halo;
-use crate::parallel::team::Team;
-use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
+use parallel::clock::{self, Phase};
+use parallel::exchange::any;
+use parallel::halo::Halo;
+use parallel::team::Team;
+use petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
 
 /// S_Π, regularised, with its solver; empty if no body has primal dofs.
 pub struct PrimalProblem {

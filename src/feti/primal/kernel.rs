@@ -9,8 +9,8 @@
 //! Matrices have no rows for given values, so N is known at free dofs only. Where every node has one component given,
 //! the translation along it has N c = 0. That is no motion, although K N c = 0: such c are taken out first.
 
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
 
 /// A row belongs to a free body if its terms cancel to less than this, relative to their size. Rounding leaves 1e-15, a
 /// spring of 1e-8 of a row's stiffness leaves 1e-8.

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::parallel::exchange::exchange_words;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use parallel::exchange::exchange_words;
 
 /// Blocks on their way to the ranks that own their bodies: [n, global numbers (n), entries row by row (n²)] of each.
 pub struct Outgoing(Vec<Vec<u64>>);

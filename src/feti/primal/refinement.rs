@@ -11,8 +11,8 @@
 
 use super::space::PrimalSpace;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
 use crate::substructures::{Subdomain, Substructures};
+use base::linalg::dense::Dense;
 
 /// Largest ratio of coefficients in a body up to which the assembled matrix is accurate enough.
 pub const PLAIN: f64 = 1e3;

@@ -3,15 +3,15 @@
 use super::space::PrimalSpace;
 use crate::feti::subdomain::factor::no_stiffness;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{any, gather_all};
-use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
+use parallel::exchange::{any, gather_all};
+use petsc::Session;
 
 /// Refuses vertices whose rows of S_Π are zero, by the place of the first. Collective.
 ///
 /// # Errors
-/// [`Error::Unfit`](crate::Error::Unfit), on all ranks.
+/// [`Error::Unfit`](base::Error::Unfit), on all ranks.
 pub fn check(
     session: &Session,
     problem: &Substructures,

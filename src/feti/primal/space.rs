@@ -15,11 +15,11 @@ use super::matrix::{Outgoing, PrimalMatrix};
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, offsets};
-use crate::parallel::halo::numbered;
 use crate::substructures::Substructures;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{exchange_words, offsets};
+use parallel::halo::numbered;
 
 /// A body whose primal dofs this rank owns.
 #[derive(Debug)]

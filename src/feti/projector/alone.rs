@@ -8,12 +8,12 @@ use super::known::Known;
 use super::motion::{Motion, NOTHING_SOLVED};
 use super::pattern::Pattern;
 use super::weak::weak_columns;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange_words, gather_all};
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::sorted::distinct;
+use cholesky::team::Team;
+use parallel::exchange::{exchange_words, gather_all};
 
 /// The motions of single bodies that nothing holds, or nothing but rounding of the input, each with the name of the
 /// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale.

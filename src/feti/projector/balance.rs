@@ -7,9 +7,9 @@ use super::known::Known;
 use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use crate::feti::settings::ProjectorKind;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use parallel::exchange::sum_all;
+use petsc::Vec as PetscVec;
 
 /// Forces so many times as large as the smallest ones that balance the loads, and larger than the λ that they are added
 /// to, are no start: the iteration would have to take them back, with the digits that they leave it

@@ -11,9 +11,9 @@ use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
 use super::rows::Rows;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{gather_all, highest, sum_all};
 use crate::substructures::Substructures;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{gather_all, highest, sum_all};
 
 /// Columns in blocks: those of a block follow each other, and belong to one body.
 pub struct Blocks {

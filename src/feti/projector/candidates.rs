@@ -8,10 +8,10 @@ use super::natural::NaturalCoarse;
 use super::rows::{RowEntry, Rows};
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::dense::Dense;
-use crate::parallel::exchange::{exchange, max_all};
-use crate::parallel::owners::Owners;
 use crate::substructures::Substructures;
+use base::linalg::dense::Dense;
+use parallel::exchange::{exchange, max_all};
+use parallel::owners::Owners;
 
 /// Entries of R below this part of their column's largest are rounding, and entries of G below this part of their row.
 const STILL: f64 = 1e-12;

@@ -10,8 +10,8 @@ use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use super::raised::{Row, MOST};
 use super::shape::Shape;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{gather_all, highest, sum_all};
+use parallel::clock::{self, Phase};
+use parallel::exchange::{gather_all, highest, sum_all};
 
 /// Motions on which the rows do more work than this, relative to the largest that they could do, are not known well
 /// enough: P would lose digits. As a rule it is some times rounding.

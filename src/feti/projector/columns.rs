@@ -8,7 +8,7 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 
 use crate::feti::primal::space::OwnedBody;
-use crate::parallel::exchange::gather_all;
+use parallel::exchange::gather_all;
 
 /// The columns of all bodies, and the ranks that own the bodies.
 #[derive(Debug, Clone, Default)]
@@ -39,7 +39,6 @@ impl KernelColumns {
     }
 
     /// Columns of bodies whose kernels have these dimensions; no rank owns any.
-    #[cfg(feature = "cli")]
     pub fn of_defects(defects: impl Iterator<Item = usize>) -> KernelColumns {
         let mut start = vec![0];
         defects.for_each(|d| start.push(start[start.len() - 1] + d));

@@ -14,13 +14,13 @@ use super::gtg::{direct, Side};
 use super::pattern::Pattern;
 use super::refined::probe;
 use super::rows::Rows;
-use crate::linalg::csr::Csr;
-use crate::linalg::sorted::distinct;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::sum_all;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Comm, Ksp, Mat, MatFlag, Session, ShellPc, Vec as PetscVec};
 use crate::{Error, Result};
+use base::linalg::csr::Csr;
+use base::linalg::sorted::distinct;
+use parallel::clock::{self, Phase};
+use parallel::exchange::sum_all;
+use parallel::halo::Halo;
+use petsc::{Comm, Ksp, Mat, MatFlag, Session, ShellPc, Vec as PetscVec};
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix. A factorisation that is
 /// worse is iterated upon as well.

@@ -8,8 +8,8 @@ use super::natural::NaturalCoarse;
 use super::twist::{twists, Twist};
 use super::words::{as_one, in_words};
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
+use base::linalg::sorted::distinct;
 
 /// Motions that nothing holds, of one body or of bodies that move together.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,11 +13,11 @@ use super::motion::{Motion, NOTHING, NOTHING_SOLVED};
 use super::raised::Raised;
 use super::shape::Shape;
 use super::weak::weak_columns;
-use crate::cholesky::shared::SharedCholesky;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::{Semidefinite, DEPENDENT};
+use cholesky::shared::SharedCholesky;
+use cholesky::team::Team;
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;

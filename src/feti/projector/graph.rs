@@ -2,10 +2,10 @@
 
 use super::blocks::positions;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::lists::Lists;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
+use base::linalg::lists::Lists;
+use base::linalg::sorted::distinct;
+use parallel::exchange::gather_all;
 
 /// The bodies and the rows between them. Neighbours are known to every rank, rows to their owner.
 pub struct BodyGraph {

@@ -18,10 +18,10 @@ use super::rows::Rows;
 use super::shape::Shape;
 use super::spread::Spread;
 use crate::feti::settings::ProjectorKind;
-use crate::linalg::csr::Csr;
-use crate::parallel::clock::{self, Phase};
-use crate::petsc::{Comm, Ksp, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
+use base::linalg::csr::Csr;
+use parallel::clock::{self, Phase};
+use petsc::{Comm, Ksp, Mat, Options, Session, Vec as PetscVec};
 
 /// The inverse or its transpose.
 #[derive(Clone, Copy)]

@@ -5,9 +5,9 @@ use super::columns::KernelColumns;
 use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
+use base::linalg::sorted::distinct;
 
 impl NaturalCoarse {
     /// Returns an error if the load moves a body that no row holds: e is then not in the range of Gᵀ.

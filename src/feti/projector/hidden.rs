@@ -8,7 +8,7 @@
 use super::gram::{Factor, Gram, REGULAR};
 use super::motion::{Motion, NOTHING_SOLVED};
 use super::refined::probe;
-use crate::parallel::exchange::sum_all;
+use parallel::exchange::sum_all;
 
 /// Steps of inverse iteration.
 const STEPS: usize = 3;

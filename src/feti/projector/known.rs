@@ -14,11 +14,11 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::motion::Motion;
-use crate::cholesky::team::Team;
-use crate::linalg::sorted::distinct;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{exchange_words, gather_all, max_all, sum_all};
-use crate::parallel::post::{posting, received, Address};
+use base::linalg::sorted::distinct;
+use cholesky::team::Team;
+use parallel::clock::{self, Phase};
+use parallel::exchange::{exchange_words, gather_all, max_all, sum_all};
+use parallel::post::{posting, received, Address};
 
 /// The columns that a rank knows.
 #[derive(Debug, Default)]

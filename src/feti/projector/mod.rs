@@ -21,7 +21,6 @@ pub mod natural;
 mod noise;
 mod numbers;
 pub mod pattern;
-#[cfg(feature = "cli")]
 pub mod planned;
 pub mod products;
 mod raised;

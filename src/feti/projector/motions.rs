@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{highest, lowest};
-use crate::parallel::halo::Halo;
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{highest, lowest};
+use parallel::halo::Halo;
+use petsc::Vec as PetscVec;
 
 impl NaturalCoarse {
     /// For each motion of space (constants, or translations and rotations about the origin) the α with R α nearest to

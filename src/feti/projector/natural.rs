@@ -30,12 +30,12 @@ use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::any;
-use crate::petsc::{Options, Session, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::exchange::any;
+use petsc::{Options, Session, Vec as PetscVec};
 
 /// Largest relative error that a vector may have, with Q = M⁻¹, after multiplication with Gᵀ Q G and its inverse. Where
 /// stiff channels join bodies that only soft contact holds, Gᵀ M⁻¹ G is nearly singular and P is no longer a

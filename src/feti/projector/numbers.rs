@@ -10,11 +10,11 @@ use super::pattern::Pattern;
 use super::products::{Outgoing, Sent};
 use super::rows::Rows;
 use super::shape::Shape;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
-use crate::linalg::sorted::distinct;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::sum_all;
+use base::linalg::csr::Csr;
+use base::linalg::sorted::distinct;
+use cholesky::team::Team;
+use parallel::clock::{self, Phase};
+use parallel::exchange::sum_all;
 
 /// GᵀG for the rows that hold.
 #[derive(Debug, Default)]

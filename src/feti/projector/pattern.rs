@@ -6,11 +6,11 @@ use faer::MatRef;
 use mpi::topology::SimpleCommunicator;
 
 use super::rows::Rows;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::gather_all;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
+use parallel::clock::{self, Phase};
+use parallel::exchange::gather_all;
 
 /// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. A rank may have the
 /// rows of some bodies alone; the others are empty there.

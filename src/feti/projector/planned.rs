@@ -12,8 +12,8 @@ use super::rounding::rounding_of_rows;
 use super::shape::{Shape, Sharing};
 use super::twist::twists;
 use crate::feti::jump::operator::Jump;
-use crate::linalg::dense::Dense;
 use crate::substructures::Substructures;
+use base::linalg::dense::Dense;
 
 /// The motions that all candidate rows together leave free, found without a factorisation. `combinations` has the
 /// kernel of each body as combinations of the candidates for it, on every rank; `jump` has its entries at local dofs.

@@ -8,9 +8,9 @@ use super::known::Known;
 use super::pattern::Pattern;
 use super::rows::Rows;
 use super::shape::Shape;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
-use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
+use base::linalg::csr::Csr;
+use cholesky::team::Team;
+use parallel::exchange::{exchange_words, gather_all, sum_all};
 
 /// Entries on their way to the ranks that have their rows.
 pub struct Outgoing<'a> {

@@ -17,10 +17,10 @@ use faer::prelude::Solve;
 use super::gram::{Factor, Gram};
 use super::known::Known;
 use super::motion::Motion;
-use crate::cholesky::team::Team;
-use crate::linalg::dense::Dense;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::sum_all;
+use base::linalg::dense::Dense;
+use cholesky::team::Team;
+use parallel::clock::{self, Phase};
+use parallel::exchange::sum_all;
 
 /// Largest number of rows that are put back without another factorisation.
 pub const MOST: usize = 64;

@@ -10,8 +10,8 @@ use super::gram::{diagonal_of_own_rows, Gram};
 use super::gtg::Side;
 use super::known::Known;
 use super::shape::Shape;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
+use base::linalg::csr::Csr;
+use cholesky::team::Team;
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU
 /// factorisation.

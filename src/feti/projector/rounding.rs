@@ -5,9 +5,9 @@ use mpi::topology::SimpleCommunicator;
 use super::rows::Rows;
 use super::shape::Shape;
 use crate::feti::jump::operator::Jump;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::any;
 use crate::substructures::Substructures;
+use base::linalg::sorted::distinct;
+use parallel::exchange::any;
 
 /// Σ ε² |b|² over the candidate rows of a column's body, for each column that is known here; empty where all directions
 /// are exact. Collective.

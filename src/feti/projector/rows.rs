@@ -7,11 +7,11 @@ use rustc_hash::FxHashMap;
 
 use super::by_column::ByColumn;
 use super::known::Known;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::{dot, Dense};
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{sum_all, Record};
+use base::linalg::csr::Csr;
+use base::linalg::dense::{dot, Dense};
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::sorted::distinct;
+use parallel::exchange::{sum_all, Record};
 
 /// An entry of which no more than this part is left was along the motions as a whole.
 const ALL: f64 = 1e-3;

@@ -10,13 +10,13 @@ use super::gram::FEW;
 use super::known::Known;
 use super::pattern::Pattern;
 use super::rows::Rows;
-use crate::cholesky::dissection::{part_of_dissection, Vertices};
-use crate::cholesky::symbolic::Symbolic;
-use crate::cholesky::team::Team;
-use crate::linalg::csr::Csr;
-use crate::linalg::sorted::distinct;
-use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::gather_all;
+use base::linalg::csr::Csr;
+use base::linalg::sorted::distinct;
+use cholesky::dissection::{part_of_dissection, Vertices};
+use cholesky::symbolic::Symbolic;
+use cholesky::team::Team;
+use parallel::clock::{self, Phase};
+use parallel::exchange::gather_all;
 
 /// Where GᵀG has entries, and in which order it is factored.
 pub struct Shape {

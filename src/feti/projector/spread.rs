@@ -9,11 +9,11 @@ use std::rc::Rc;
 
 use super::gram::Gram;
 use super::rows::Rows;
-use crate::cholesky::team::Team;
-use crate::parallel::exchange::any;
-use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
+use cholesky::team::Team;
+use parallel::exchange::any;
+use parallel::halo::Halo;
+use petsc::{Session, Vec as PetscVec};
 
 /// The way from the columns of this rank's rows to those who factor them, and back.
 pub struct Spread {

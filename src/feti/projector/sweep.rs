@@ -3,8 +3,8 @@
 
 use super::graph::BodyGraph;
 use super::rows::Rows;
-use crate::petsc::Vec as PetscVec;
 use crate::Result;
+use petsc::Vec as PetscVec;
 
 /// This rank's entries of a column of multipliers.
 #[derive(Debug, Clone, Default)]

@@ -4,11 +4,11 @@ use mpi::topology::SimpleCommunicator;
 
 use super::columns::KernelColumns;
 use super::motion::Motion;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::vec3::{cross, minus, norm};
-use crate::parallel::exchange::gather_all;
 use crate::substructures::{Subdomain, Substructures};
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::vec3::{cross, minus, norm};
+use parallel::exchange::gather_all;
 
 /// A rigid motion of a body: the point `centre` moves by `translation`, all else turns about it by `rotation` (radians,
 /// a vector along the axis; in the plane along z).

@@ -1,7 +1,7 @@
 //! Motions of single bodies on which rows do no more than rounding of the input allows (`noise`).
 
 use crate::feti::primal::kernel::fixing_rows;
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// Eigenvalues of a small matrix are known to this part of the largest one.
 const EIGENVALUES: f64 = 1e-14;

@@ -10,10 +10,10 @@ use crate::feti::cost::variation::JUMPS;
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
-use crate::parallel::exchange::{any, sum_all};
-use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
+use parallel::exchange::{any, sum_all};
+use petsc::Vec as PetscVec;
 
 /// Bodies that differ in stiffness by more than this are too far apart for all rows of M⁻¹: P would magnify rounding by
 /// the ratio. Up to it Q is M⁻¹ itself.

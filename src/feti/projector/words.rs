@@ -1,7 +1,7 @@
 //! Rigid motions in words: slides along x, turns about z through (0.5, 0.2, 0).
 
 use super::twist::Twist;
-use crate::linalg::vec3::{cross, dot, minus, norm};
+use base::linalg::vec3::{cross, dot, minus, norm};
 
 /// Parts of a motion below this, relative to the others, are not worth a word.
 const SMALL: f64 = 1e-6;

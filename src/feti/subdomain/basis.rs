@@ -8,7 +8,7 @@
 
 use std::collections::HashMap;
 
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// A functional is dependent on earlier ones if less than this part of it is left after orthogonalisation. That part is
 /// rounding.

@@ -2,8 +2,8 @@
 //! singular, and the change back to the nodal dofs.
 
 use super::problem::LocalProblem;
-use crate::cholesky::multifrontal::SingularInterior;
-use crate::linalg::dense::{self, Dense, Scratch};
+use base::linalg::dense::{self, Dense, Scratch};
+use cholesky::multifrontal::SingularInterior;
 
 /// S_ΔΔ counts as singular if a pivot is below this fraction of the dof's diagonal entry of K. The dof then becomes a
 /// primal dof of its own. A dof that did not need this does no harm, because the primal problem frees it exactly; the

@@ -11,13 +11,14 @@
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-use super::equal::{self, Likeness, SAMPLES, UNIT};
+use super::equal::{Likeness, SAMPLES, UNIT};
 use super::turn::Turn;
 use crate::feti::jump::operator::Jump;
-use crate::linalg::csr::Csr;
-use crate::linalg::orthogonal::{fit, Fit, Matrix, IDENTITY};
-use crate::parallel::team::Team;
+use crate::feti::subdomain::equal;
 use crate::substructures::Substructures;
+use base::linalg::csr::Csr;
+use base::linalg::orthogonal::{fit, Fit, Matrix, IDENTITY};
+use parallel::team::Team;
 
 /// Nodes may be this far from their turned counterparts, relative to the extent of the subdomain. The bound only saves
 /// comparisons of matrices.
@@ -245,7 +246,3 @@ impl<'a> Blocks<'a> {
         own.map(|i| self.k.get(i, i)).sum()
     }
 }
-
-#[cfg(test)]
-#[path = "../../../tests/inside/feti/subdomain/congruent.rs"]
-mod tests;

@@ -13,9 +13,9 @@ use std::sync::Arc;
 use super::congruent;
 use super::turn::Turn;
 use crate::feti::jump::operator::Jump;
-use crate::linalg::csr::Csr;
-use crate::parallel::team::Team;
 use crate::substructures::Substructures;
+use base::linalg::csr::Csr;
+use parallel::team::Team;
 
 /// What a subdomain shares: its matrix is `factor` · R K Rᵀ, K being the matrix of local subdomain `first`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec
 }
 
 /// For every local subdomain, the first one that equals it and the multiple of its matrix.
-fn multiples(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
+pub fn multiples(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
     let n = problem.local.len();
     let buckets: Vec<u64> = (0..n).map(|j| hash(problem, jump, j)).collect();
     first_of_each(team, &buckets, 1.0, |i, j| multiple(problem, jump, i, j))
@@ -84,10 +84,10 @@ pub(super) fn first_of_each<T: Copy + Send + Sync>(
 }
 
 /// Number of matrix entries that enter the hash.
-pub(super) const SAMPLES: usize = 64;
+pub const SAMPLES: usize = 64;
 
 /// Ratios of entries enter the hash as multiples of one over this, so that rounding does not change it.
-pub(super) const UNIT: f64 = 1e6;
+pub const UNIT: f64 = 1e6;
 
 /// Entries may differ by this fraction of √(k_ii k_jj): a few additions in another order change them by as much.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -123,7 +123,7 @@ pub(super) fn same_pattern(problem: &Substructures, jump: &Jump, i: usize, j: us
 }
 
 /// φ with K_j = φ K_i if the subdomains are equal, `None` otherwise.
-fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<f64> {
+pub fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<f64> {
     if !same_pattern(problem, jump, i, j) {
         return None;
     }
@@ -154,7 +154,3 @@ fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<
         })
         .then_some(ratio)
 }
-
-#[cfg(test)]
-#[path = "../../../tests/inside/feti/subdomain/equal.rs"]
-mod tests;

@@ -5,20 +5,21 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-use super::equal::{self, Likeness};
+use super::equal::Likeness;
 use super::kept::Still;
 use super::problem::LocalProblem;
 use super::scaled::Scaled;
 use super::which::OperatorForm;
-use crate::cholesky::interior::{Analysed, Condenser, LocalSolver, NoFactor, Solver};
-use crate::cholesky::multifrontal::SingularInterior;
 use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{Adaptive, MethodSettings, Operators, PcType, Scaling};
-use crate::parallel::team::Team;
-use crate::petsc::Session;
+use crate::feti::subdomain::equal;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
+use cholesky::interior::{Analysed, Condenser, LocalSolver, NoFactor, Solver};
+use cholesky::multifrontal::SingularInterior;
+use parallel::team::Team;
+use petsc::Session;
 
 /// The local subdomains, factored.
 pub(crate) struct Factored {

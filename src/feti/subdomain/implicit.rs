@@ -15,11 +15,11 @@
 
 use super::basis::Basis;
 use super::which::Operator;
-use crate::cholesky::interior::{Analysed, Own};
-use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::{self, Dense, Scratch};
+use base::linalg::csr::Csr;
+use base::linalg::dense::{self, Dense, Scratch};
+use cholesky::interior::{Analysed, Own};
+use cholesky::multifrontal::{PartialCholesky, SingularInterior};
+use cholesky::symbolic::Symbolic;
 
 /// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
 /// subdomain then.

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::scaled::Scaled;
 use super::which::OperatorForm;
-use crate::cholesky::interior::Analysed;
 use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::body::Pattern;
+use cholesky::interior::Analysed;
 
 /// The subdomains of a set-up, each with the interface that it was factored for.
 pub(crate) struct Kept {

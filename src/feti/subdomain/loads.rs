@@ -3,7 +3,7 @@
 use super::problem::{Inside, LocalProblem};
 
 impl LocalProblem {
-    /// Condenses loads, at most [`LANES`](crate::cholesky::lanes::LANES). Returns (work, g) for each with g = f_Γ −
+    /// Condenses loads, at most [`LANES`](cholesky::lanes::LANES). Returns (work, g) for each with g = f_Γ −
     /// K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
     /// [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
     pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
@@ -28,7 +28,7 @@ impl LocalProblem {
         work.into_iter().map(with_gamma).collect()
     }
 
-    /// Solutions on all dofs for at most [`LANES`](crate::cholesky::lanes::LANES) parts, each with `work` of
+    /// Solutions on all dofs for at most [`LANES`](cholesky::lanes::LANES) parts, each with `work` of
     /// [`condense_many`](Self::condense_many) and the interface values `u_gamma`. The matrix of each part is the
     /// factored one times its entry of `scales`.
     pub(crate) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {

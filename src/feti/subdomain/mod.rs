@@ -2,7 +2,7 @@
 
 pub mod basis;
 pub mod condense;
-mod congruent;
+pub mod congruent;
 pub mod equal;
 pub mod factor;
 pub mod implicit;

@@ -4,9 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::problem::{Inside, LocalProblem, Packed};
 use super::which::Operator;
-use crate::cholesky::lanes::LANES;
-use crate::linalg::dense::{multiply, Dense};
-use crate::linalg::symmetric::Symmetric;
+use base::linalg::dense::{multiply, Dense};
+use base::linalg::symmetric::Symmetric;
+use cholesky::lanes::LANES;
 
 impl LocalProblem {
     /// Whether S and T are sparse solves.

@@ -27,11 +27,11 @@ use super::basis::Basis;
 use super::implicit::Implicit;
 use super::turn::Turn;
 use super::which::OperatorForm;
-use crate::cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
-use crate::cholesky::symbolic::Keep;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
-use crate::linalg::symmetric::Symmetric;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+use base::linalg::symmetric::Symmetric;
+use cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
+use cholesky::symbolic::Keep;
 
 /// Largest number of free motions that are searched in a subdomain that touches nothing: twice the rigid motions of a
 /// solid. A matrix that still has a bad pivot after that is not semidefinite, and every further attempt would cost a

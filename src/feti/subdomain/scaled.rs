@@ -17,7 +17,7 @@ use std::sync::Arc;
 use super::problem::{Gamma, LocalProblem};
 use super::turn::Turn;
 use super::which::Operator;
-use crate::linalg::dense::Dense;
+use base::linalg::dense::Dense;
 
 /// One subdomain of this rank.
 #[derive(Debug, Clone)]
@@ -247,7 +247,7 @@ impl Scaled {
         out
     }
 
-    /// Solutions of subdomains that share their operators, at most [`LANES`](crate::cholesky::lanes::LANES). Each part
+    /// Solutions of subdomains that share their operators, at most [`LANES`](cholesky::lanes::LANES). Each part
     /// has the result of [`condense_many`](Self::condense_many) and the values on Γ.
     pub fn recover_many(members: &[&Scaled], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
         let Some(first) = members.first() else {

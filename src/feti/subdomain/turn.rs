@@ -3,8 +3,8 @@
 //! All components of a node stand side by side, in the local dofs as on Γ. Averages are sorted by component first.
 
 use super::problem::Gamma;
-use crate::linalg::dense::Dense;
-use crate::linalg::orthogonal::Matrix;
+use base::linalg::dense::Dense;
+use base::linalg::orthogonal::Matrix;
 
 /// R of a subdomain with `components` dofs at every node. Q turns, mirrors, or both.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +20,7 @@ type Places = [usize; 3];
 
 impl Turn {
     /// R with `q` at every node.
-    pub(crate) fn new(components: usize, q: Matrix) -> Turn {
+    pub fn new(components: usize, q: Matrix) -> Turn {
         Turn { components, q }
     }
 
@@ -111,7 +111,3 @@ impl Turn {
         vertices.chain(averages).collect()
     }
 }
-
-#[cfg(test)]
-#[path = "../../../tests/inside/feti/subdomain/turn.rs"]
-mod tests;

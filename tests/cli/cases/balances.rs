@@ -3,12 +3,12 @@
 use crate::support::checks::number;
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use fetifeti::mesh::deck::{read_dat, Quantity};
+use deck::{read_dat, Quantity};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 
-const CASES: &str = "tests/data/cases";
+const CASES: &str = "../../tests/data/cases";
 
 /// Solves a file on some ranks; returns the report.
 fn solve(file: &str, dir: &Scratch, ranks: usize, more: &[&str]) -> Value {

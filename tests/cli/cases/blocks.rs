@@ -2,7 +2,7 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use fetifeti::mesh::deck::{read_dat, Quantity};
+use deck::{read_dat, Quantity};
 use std::collections::BTreeMap;
 
 /// A block of hexahedra between `origin` and `origin + size`; z grows by `slope` times x. Its nodes and cells are

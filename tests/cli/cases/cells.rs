@@ -23,7 +23,7 @@ fn solve(ranks: usize, file: &str) -> (String, Value) {
 #[test]
 fn a_cell_that_is_folded_at_a_corner_is_solved_with_a_warning() {
     for ranks in [1, 2] {
-        let (stderr, report) = solve(ranks, "tests/data/cases/06_corner_jacobian.inp");
+        let (stderr, report) = solve(ranks, "../../tests/data/cases/06_corner_jacobian.inp");
         let force = report["node_print"][0]["total_force"][2]
             .as_f64()
             .expect("a force");
@@ -42,7 +42,8 @@ fn a_cell_that_is_folded_at_a_corner_is_solved_with_a_warning() {
     }
     // Farther out, a point of integration is folded: CalculiX says "nonpositive jacobian determinant".
     let scratch = Scratch::new("folded");
-    let text = std::fs::read_to_string("tests/data/cases/06_corner_jacobian.inp").expect("a deck");
+    let text =
+        std::fs::read_to_string("../../tests/data/cases/06_corner_jacobian.inp").expect("a deck");
     let far = scratch.file(
         "far.inp",
         &text
@@ -153,7 +154,7 @@ fn bar(kind: &str, clockwise: [bool; 2]) -> String {
 /// Plane cells of every kind may run clockwise, all of them or some.
 #[test]
 fn plane_cells_may_run_clockwise() {
-    let (_, report) = solve(1, "tests/data/cases/08_clockwise.toml");
+    let (_, report) = solve(1, "../../tests/data/cases/08_clockwise.toml");
     let energy = report["energy"].as_f64().expect("a number");
     assert!((energy + 0.01).abs() < 1e-12, "{energy}");
     let scratch = Scratch::new("clockwise");
@@ -224,8 +225,9 @@ fn faces_of_clockwise_elements_keep_their_numbers() {
 #[test]
 fn solid_cells_inside_out_are_refused() {
     let scratch = Scratch::new("inside-out");
-    let text = std::fs::read_to_string("tests/data/cases/03_energy_of_given_displacement.inp")
-        .expect("a deck");
+    let text =
+        std::fs::read_to_string("../../tests/data/cases/03_energy_of_given_displacement.inp")
+            .expect("a deck");
     let file = scratch.file(
         "mirrored.inp",
         &text.replace("1, 1,2,3,4,5,6,7,8", "1, 5,6,7,8,1,2,3,4"),

@@ -53,7 +53,7 @@ const CUBE: &str = "*NODE, NSET=NALL\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 
 fn a_deck_has_the_energy_of_its_given_displacements() {
     let scratch = Scratch::new("case-energy");
     for ranks in [1, 2] {
-        let file = "tests/data/cases/03_energy_of_given_displacement.inp";
+        let file = "../../tests/data/cases/03_energy_of_given_displacement.inp";
         near(&energies(&scratch, ranks, file, 1), &[5.0]);
     }
     // The same mesh in a scene.

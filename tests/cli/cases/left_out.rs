@@ -27,7 +27,12 @@ fn both_say(said: &[String; 2], sentence: &str) {
 /// Half of the model belongs to no body.
 #[test]
 fn cells_of_no_body_are_counted() {
-    let run = |command| run_fetifeti(1, &[command, "tests/data/cases/09_untagged_volume.toml"]);
+    let run = |command| {
+        run_fetifeti(
+            1,
+            &[command, "../../tests/data/cases/09_untagged_volume.toml"],
+        )
+    };
     for command in ["plan", "solve"] {
         let run = run(command);
         assert_eq!(run.code, 0, "{}", run.all());

@@ -6,8 +6,8 @@ use crate::support::program::run_fetifeti;
 use serde_json::Value;
 use std::fs;
 
-const SCENE: &str = "tests/data/cases/13_extension.toml";
-const MESH: &str = "tests/data/cases/13_extension.msh2";
+const SCENE: &str = "../../tests/data/cases/13_extension.toml";
+const MESH: &str = "../../tests/data/cases/13_extension.msh2";
 
 /// The energy that `solve` reports of a scene.
 fn energy(ranks: usize, scene: &str) -> f64 {

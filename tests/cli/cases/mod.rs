@@ -39,7 +39,7 @@ pub fn case(name: &str, ranks: usize, options: &[&str]) -> Solved {
     solve(
         &scratch,
         ranks,
-        &format!("tests/data/cases/{name}"),
+        &format!("../../tests/data/cases/{name}"),
         options,
     )
 }

@@ -206,7 +206,7 @@ fn a_block_that_slides_freely_is_named_by_plan_and_solve() {
         let wider = 0.5 * 0.3 * 1.3 / 100.0;
         assert!((u[0].as_f64().unwrap() - wider).abs() < 0.2 * wider, "{u}");
     }
-    let plan = run_fetifeti(2, &["plan", "tests/data/cases/20_slides_freely.toml"]);
+    let plan = run_fetifeti(2, &["plan", "../../tests/data/cases/20_slides_freely.toml"]);
     let said = "nothing holds body \"high\" where it slides along x: a load that drives this has no answer";
     assert!(plan.stdout.contains(said), "{}", plan.all());
 }
@@ -230,7 +230,7 @@ fn displacements_beyond_the_model_are_a_warning() {
         .contains("times the size of the model"));
     // The same plate of steel in the right unit has nothing to say.
     let scratch = Scratch::new("right_unit");
-    let text = std::fs::read_to_string("tests/data/cases/22_wrong_unit.toml").unwrap();
+    let text = std::fs::read_to_string("../../tests/data/cases/22_wrong_unit.toml").unwrap();
     let scene = scratch.path("right.toml");
     std::fs::write(&scene, text.replace("young = 210", "young = 210e9")).unwrap();
     let right = fetifeti(&["solve", &scene]);

@@ -54,7 +54,7 @@ fn a_deck_with_contact_of_one_body() {
     let scratch = Scratch::new("cases_own_deck");
     let (out, json) = (scratch.path("out"), scratch.path("r.json"));
     for ranks in [1, 2] {
-        let deck = "tests/data/cases/07_contact_of_one_body.inp";
+        let deck = "../../tests/data/cases/07_contact_of_one_body.inp";
         let run = run_fetifeti(ranks, &["solve", deck, "--out", &out, "--json", &json]);
         assert_eq!(run.code, 0, "{}", run.all());
         let text = std::fs::read_to_string(&json).expect("a report");

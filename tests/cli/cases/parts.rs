@@ -8,7 +8,7 @@ use std::fs;
 
 /// Two cubes on each other, the upper one turned by 90 degrees, and a cap that is tied to them: a column of height 2.5
 /// and section 1 that 10 press.
-const DECK: &str = "tests/data/cases/instances.inp";
+const DECK: &str = "../../tests/data/cases/instances.inp";
 
 fn solved(ranks: usize, file: &str) -> Value {
     let rtol = ["-fetifeti_ksp_rtol", "1e-11"];
@@ -85,7 +85,8 @@ fn a_part_may_be_all_there_is() {
 #[test]
 fn a_turned_instance_moves_as_its_part_does() {
     let scratch = Scratch::new("cases_turned");
-    let flat = fs::read_to_string("tests/data/cases/07_contact_of_one_body.inp").expect("a deck");
+    let flat =
+        fs::read_to_string("../../tests/data/cases/07_contact_of_one_body.inp").expect("a deck");
     let at = |what: &str| flat.find(what).expect(what);
     let [material, section, contact] =
         ["*MATERIAL", "*SOLID SECTION", "*SURFACE INTERACTION"].map(at);

@@ -146,7 +146,7 @@ fn solve(file: &str, dir: &Scratch, ranks: usize) -> (Output, String) {
 #[test]
 fn a_finer_slave_leaves_the_multipliers_to_the_master() {
     let dir = Scratch::new("pressures-case");
-    let (run, csv) = solve("tests/data/cases/12_fine_slave_pressure.inp", &dir, 1);
+    let (run, csv) = solve("../../tests/data/cases/12_fine_slave_pressure.inp", &dir, 1);
     // The bodies are four times as wide.
     let worst = error_under(8.0 * LOAD * SIZE, &csv, "pressure");
     assert!(worst < 0.02, "{worst}");

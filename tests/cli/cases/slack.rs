@@ -40,7 +40,11 @@ fn refused(ranks: usize, file: &str) -> String {
 #[test]
 fn a_pulled_column_of_wedges_does_not_turn() {
     for ranks in [1, 2] {
-        let (run, report) = solve(ranks, "tests/data/cases/04c_wedge_column_pulled.inp", &[]);
+        let (run, report) = solve(
+            ranks,
+            "../../tests/data/cases/04c_wedge_column_pulled.inp",
+            &[],
+        );
         assert_eq!(run.code, 0, "{}", run.all());
         let top = printed(&report);
         for u in &top {
@@ -60,7 +64,11 @@ fn a_pulled_column_of_wedges_does_not_turn() {
     }
     // With six points there is no such motion; CalculiX has no such element.
     let full = ["-fetifeti_full_integration"];
-    let (run, report) = solve(1, "tests/data/cases/04c_wedge_column_pulled.inp", &full);
+    let (run, report) = solve(
+        1,
+        "../../tests/data/cases/04c_wedge_column_pulled.inp",
+        &full,
+    );
     assert_eq!(run.code, 0, "{}", run.all());
     assert!(report.get("notes").is_none(), "{}", report["notes"]);
     assert!((printed(&report)[0][2] - 8.73e-4).abs() < 2e-6);
@@ -69,7 +77,7 @@ fn a_pulled_column_of_wedges_does_not_turn() {
 /// A torque drives what nothing holds: the sentence names the motion and the remedy, which works.
 #[test]
 fn a_twisted_column_of_wedges_is_refused_with_the_remedy() {
-    let file = "tests/data/cases/04b_wedge_column_torque.inp";
+    let file = "../../tests/data/cases/04b_wedge_column_torque.inp";
     for ranks in [1, 2] {
         let said = refused(ranks, file);
         for part in [

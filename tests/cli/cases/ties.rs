@@ -7,7 +7,7 @@ use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
 use serde_json::Value;
 
-const CASE: &str = "tests/data/cases/02_tie_position_tolerance.inp";
+const CASE: &str = "../../tests/data/cases/02_tie_position_tolerance.inp";
 
 /// The case with other parameters of its *TIE.
 fn case(parameters: &str, ranks: usize) -> Ran {

@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use fetifeti::soak::{fate, write, Fate};
-use fetifeti::{Result, Session};
+use fetifeti_cli::soak::{fate, write, Fate};
+use base::Result;
+use petsc::Session;
 
 /// Seconds after which a scene hangs.
 const LIMIT: u64 = 120;
@@ -52,7 +53,7 @@ fn run(session: &Session, first: u64, seconds: u64, count: u64) -> Result<()> {
     loop {
         let up = seconds > 0 && start.elapsed().as_secs() >= seconds;
         let mut ends = [f64::from(up || (count > 0 && seed - first >= count))];
-        fetifeti::max_all(session.comm(), &mut ends);
+        parallel::exchange::max_all(session.comm(), &mut ends);
         if ends[0] > 0.0 {
             break;
         }

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fetifeti::fuzz::mesh(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fetifeti_cli::fuzz::mesh(bytes));

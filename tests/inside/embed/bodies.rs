@@ -1,9 +1,9 @@
 //! Unit tests of `src/embed/bodies.rs`.
 
 use super::*;
-use crate::linalg::csr::Csr;
-use crate::parallel::owners::Owners;
 use crate::testing::with_session;
+use base::linalg::csr::Csr;
+use parallel::owners::Owners;
 
 fn bond(low: usize, high: usize, holds: bool) -> Bond {
     Bond {

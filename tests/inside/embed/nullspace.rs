@@ -1,7 +1,7 @@
 //! Unit tests of `src/embed/nullspace.rs`.
 
 use super::*;
-use crate::linalg::testing::grid_laplacian;
+use crate::matrices::grid_laplacian;
 
 /// A truss in the plane: bars of stiffness one between nodes, two components a node.
 fn truss(nodes: &[[f64; 2]], bars: &[(usize, usize)]) -> Csr {

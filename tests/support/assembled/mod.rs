@@ -10,9 +10,9 @@ pub mod compare;
 use std::collections::BTreeMap;
 
 use super::qp::{Outcome, Qp, Row, Solved};
-use fetifeti::scene::Scene;
+use base::linalg::csr::Csr;
 use fetifeti::substructures::{InterfaceRow, RowKind, Substructures};
-use fetifeti::Csr;
+use scene::Scene;
 
 /// The place of a row of the scene in the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -17,8 +17,8 @@ mod kkt;
 mod polish;
 pub mod scaled;
 
+use base::linalg::csr::Csr;
 use faer::{Mat, Side};
-use fetifeti::Csr;
 
 pub use certificate::Kkt;
 

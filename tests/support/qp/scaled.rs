@@ -1,7 +1,7 @@
 //! The problem with unit diagonal, unit rows and data of size one, for the algorithm.
 
 use super::{Qp, Row};
-use fetifeti::Csr;
+use base::linalg::csr::Csr;
 
 /// A point of the scaled problem.
 #[derive(Debug, Clone)]

@@ -5,10 +5,10 @@ mod element;
 
 use std::collections::BTreeMap;
 
+use base::linalg::csr::Csr;
 use fetifeti::substructures::{
     Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
 };
-use fetifeti::Csr;
 
 /// The material of the bodies.
 #[derive(Clone, Copy, PartialEq)]

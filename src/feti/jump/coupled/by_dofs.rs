@@ -14,11 +14,12 @@
 
 use std::sync::Arc;
 
-use super::elimination::{self, Solved};
+use super::elimination::Solved;
 use super::pattern::{compressed, product, product_pattern, transposed, Matrices, FAINT};
-use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
+use crate::feti::jump::coupled::elimination;
+use base::linalg::csr::Csr;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
 
 /// B_D for a set of independent rows.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::pattern::{product, product_pattern, Matrices};
-use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
-use crate::linalg::csr::Csr;
+use base::linalg::csr::Csr;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
 
 /// G and its factor.
 #[derive(Debug)]

@@ -9,9 +9,9 @@
 
 use super::by_rows::ByRows;
 use super::pattern::{Matrices, FAINT};
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::sorted::distinct;
+use base::linalg::dense::Dense;
+use base::linalg::semidefinite::Semidefinite;
+use base::linalg::sorted::distinct;
 
 /// With D = 1, a row with a pivot below this fraction of its diagonal entry follows from others. Rounding leaves 1e-15.
 const FOLLOWS: f64 = 1e-12;

@@ -1,8 +1,8 @@
 //! Rows without dofs of their own, solved for some of their dofs: z = T y + L λ satisfies B z = λ for any y.
 
 use super::pattern::compressed;
-use crate::linalg::csr::Csr;
-use crate::linalg::dense::Dense;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
 
 /// Sets of rows that meet are solved densely up to this number of rows.
 const MEETING: usize = 300;

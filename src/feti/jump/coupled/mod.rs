@@ -11,8 +11,8 @@ mod elimination;
 mod pattern;
 pub mod slots;
 
-use crate::linalg::dense::Dense;
-use crate::linalg::sorted::distinct;
+use base::linalg::dense::Dense;
+use base::linalg::sorted::distinct;
 use by_dofs::ByDofs;
 use by_rows::ByRows;
 use dependencies::Dependencies;

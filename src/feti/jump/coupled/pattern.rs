@@ -1,6 +1,6 @@
 //! Sparse matrices of a coupled block: B by rows and by columns, and products B W Bᵀ with a diagonal matrix W.
 
-use crate::linalg::csr::Csr;
+use base::linalg::csr::Csr;
 
 /// An entry below this fraction of the largest of its row does not make the row independent by itself.
 pub const FAINT: f64 = 1e-3;

@@ -5,8 +5,8 @@ use mpi::traits::Communicator;
 
 use crate::feti::interface::location::Locations;
 use crate::feti::jump::blocks::Block;
-use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{any, exchange_words, offsets};
+use base::linalg::sorted::distinct;
+use parallel::exchange::{any, exchange_words, offsets};
 
 /// The dofs of coupled blocks, numbered block after block on the rank that owns the block.
 #[derive(Debug, Clone, Default)]

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::feti::projector::sweep::Column;
-use crate::linalg::semidefinite::Semidefinite;
-use crate::linalg::testing::random;
+use crate::matrices::random;
 use crate::testing::with_session;
+use base::linalg::semidefinite::Semidefinite;
 
 /// Bodies in a line, three columns each on the rows of the body and of its neighbours; every tenth body repeats a
 /// column of the body before it.

@@ -1,7 +1,7 @@
 //! Unit tests of `src/feti/deflation/worth.rs`.
 
 use super::*;
-use crate::linalg::lists::Lists;
+use base::linalg::lists::Lists;
 
 /// A square of n × n bodies with `motions` rigid motions each; every body is near the eight around it.
 fn square(n: usize, motions: usize) -> (BodyGraph, Vec<usize>) {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::feti::jump::scaling;
-use crate::linalg::testing::random;
+use crate::matrices::random;
 
 type Rows = Vec<Vec<(u32, f64)>>;
 

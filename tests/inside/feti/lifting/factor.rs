@@ -1,7 +1,7 @@
 //! Unit tests of `src/feti/lifting/factor.rs`.
 
 use super::*;
-use crate::linalg::testing::{distance, grid_laplacian, random};
+use crate::matrices::{distance, grid_laplacian, random};
 
 /// The entries of K as blocks: each off-diagonal one with its mirror image, each diagonal one by itself.
 fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {

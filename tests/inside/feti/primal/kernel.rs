@@ -1,7 +1,7 @@
 //! Unit tests of `src/feti/primal/kernel.rs`.
 
 use super::*;
-use crate::linalg::testing::grid_laplacian;
+use crate::matrices::grid_laplacian;
 
 #[test]
 fn a_weak_spring_holds_and_rounding_does_not() {

@@ -1,11 +1,11 @@
 //! Unit tests of `src/feti/projector/blocks.rs`.
 
 use super::*;
-use crate::cholesky::dissection::{part_of_dissection, Vertices};
-use crate::cholesky::symbolic::Symbolic;
 use crate::feti::projector::pattern::meeting;
-use crate::linalg::csr::Csr;
 use crate::testing::with_session;
+use base::linalg::csr::Csr;
+use cholesky::dissection::{part_of_dissection, Vertices};
+use cholesky::symbolic::Symbolic;
 
 /// Bodies along each side of a cube.
 const SIDE: usize = 6;

@@ -12,7 +12,7 @@ use crate::feti::projector::pattern::meeting;
 use crate::feti::projector::refined::Refined;
 use crate::feti::projector::rows::Rows;
 use crate::feti::projector::shape::{Shape, Sharing};
-use crate::inside::support::mpi::as_rank;
+use crate::mpirun::as_rank;
 
 /// Bodies in a row, with two motions each: more motions than dense algebra is for.
 const BODIES: u32 = 120;
@@ -217,7 +217,7 @@ fn ranks_that_know_some_columns_find_what_one_finds_that_knows_all() {
             if size > 1 {
                 // Those of the bodies in a row, and with a floor its own; the rank of the floor knows all.
                 let few = here < 4 * r / 5;
-                let on = crate::parallel::exchange::total(comm, f64::from(u8::from(few)));
+                let on = parallel::exchange::total(comm, f64::from(u8::from(few)));
                 assert!(
                     on >= f64::from(size - u32::from(floor)),
                     "rank {rank}: {here} of {r}"

@@ -1,7 +1,7 @@
 //! Unit tests of `src/feti/subdomain/basis.rs`.
 
 use super::*;
-use crate::linalg::testing::random;
+use crate::matrices::random;
 
 fn averages(lists: &[&[usize]]) -> Basis {
     let mut basis = Basis::default();

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::feti::subdomain::which::Operator;
-use crate::linalg::testing::{distance, grid_laplacian, random};
+use crate::matrices::{distance, grid_laplacian, random};
 
 #[test]
 fn s_plus_inverts_a_definite_subdomain() {

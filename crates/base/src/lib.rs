@@ -1,0 +1,15 @@
+//! What every crate of fetifeti stands on: the [`Error`] with its exit code, and small linear algebra without MPI and
+//! without PETSc (`linalg`).
+
+pub mod error;
+pub mod linalg;
+
+pub use error::{Error, Fault, Result};
+
+// Helpers of tests name this crate as others do.
+#[cfg(test)]
+extern crate self as base;
+#[cfg(test)]
+#[path = "../../../tests/support/matrices.rs"]
+#[allow(dead_code)]
+mod matrices;

@@ -1,0 +1,172 @@
+//! Condensed loads and interior solutions, for the factor of any solver.
+
+use std::fmt::Debug;
+
+use crate::multifrontal::PartialCholesky;
+use crate::symbolic::Keep;
+use base::linalg::csr::Csr;
+use base::linalg::dense::Dense;
+
+/// L Lᵀ of a symmetric positive definite matrix; any thread may use it.
+pub trait SparseCholesky: Debug + Send + Sync {
+    /// x ← K⁻¹ x.
+    fn solve(&self, x: &mut [f64]);
+
+    /// The same for several vectors of equal length.
+    fn solve_many(&self, x: &mut [Vec<f64>]);
+
+    /// Bytes held by the factor.
+    fn bytes(&self) -> usize;
+}
+
+/// The factored interior of a subdomain.
+///
+/// [`forward`](Factor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I;
+/// [`backward`](Factor::backward) turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ). The meaning
+/// of `work` depends on the kind of factor.
+#[derive(Debug)]
+pub enum Factor {
+    /// [L_II; L_ΓI] by fronts, from either solver: each direction costs half a solve.
+    Fronts(PartialCholesky),
+    /// Solves with K_II: each direction costs a whole solve.
+    Solves(Condensation),
+}
+
+impl Factor {
+    /// The fronts of `k`; `keep` says whether they have the rows of the interface.
+    pub(crate) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
+        match keep {
+            Keep::Boundary => Factor::Fronts(fronts),
+            Keep::Interior => Factor::Solves(Condensation::new(k, interface, Box::new(fronts))),
+        }
+    }
+
+    /// Condenses the load `b` (length n, by dof).
+    pub fn forward(&self, b: &mut [f64]) {
+        match self {
+            Factor::Fronts(f) => f.forward(b),
+            Factor::Solves(c) => c.one(b, Condensation::forward),
+        }
+    }
+
+    /// Solves in the interior for given values on the interface; `b` holds both.
+    pub fn backward(&self, b: &mut [f64]) {
+        match self {
+            Factor::Fronts(f) => f.backward(b),
+            Factor::Solves(c) => c.one(b, Condensation::backward),
+        }
+    }
+
+    /// Applies [`forward`](Factor::forward) to at most [`LANES`](crate::lanes::LANES) vectors.
+    pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
+        match self {
+            Factor::Fronts(f) => f.forward_many(columns),
+            Factor::Solves(c) => c.forward(columns),
+        }
+    }
+
+    /// Applies [`backward`](Factor::backward) to at most [`LANES`](crate::lanes::LANES) vectors.
+    pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
+        match self {
+            Factor::Fronts(f) => f.backward_many(columns),
+            Factor::Solves(c) => c.backward(columns),
+        }
+    }
+
+    /// Number of bytes held.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Factor::Fronts(f) => f.bytes(),
+            Factor::Solves(c) => c.bytes(),
+        }
+    }
+}
+
+/// A solver for K_II, and the block K_ΓI.
+#[derive(Debug)]
+pub struct Condensation {
+    /// x ← [K_II⁻¹ x_I; 0].
+    interior: Box<dyn SparseCholesky>,
+    interface: Vec<u32>,
+    /// K_ΓI: a row for each interface dof, columns by dof.
+    coupling: Csr,
+}
+
+impl Condensation {
+    /// `interior` solves with K_II on vectors by dof and leaves zero on the interface.
+    pub fn new(k: &Csr, interface: &[u32], interior: Box<dyn SparseCholesky>) -> Condensation {
+        let inside = k.others(interface);
+        let mut coupling = k.block(interface, &inside);
+        let by_dof = |j: &mut u32| *j = inside[*j as usize];
+        coupling.col.iter_mut().for_each(by_dof);
+        coupling.col.shrink_to_fit();
+        coupling.val.shrink_to_fit();
+        Condensation {
+            interior,
+            interface: interface.to_vec(),
+            coupling,
+        }
+    }
+
+    /// The factor of the whole of `k`, without an interface.
+    pub fn of_all(k: &Csr, factor: Box<dyn SparseCholesky>) -> (Factor, Dense) {
+        (
+            Factor::Solves(Condensation::new(k, &[], factor)),
+            Dense::default(),
+        )
+    }
+
+    /// The interface dofs, each with its row of K_ΓI.
+    fn rows(&self) -> impl Iterator<Item = (usize, &[u32], &[f64])> {
+        self.interface.iter().enumerate().map(|(r, &i)| {
+            let (col, val) = self.coupling.row(r);
+            (i as usize, col, val)
+        })
+    }
+
+    /// g ← f_Γ − K_ΓI K_II⁻¹ f_I; f_I is left as it is.
+    fn forward(&self, columns: &mut [Vec<f64>]) {
+        if self.interface.is_empty() {
+            return;
+        }
+        let mut x = columns.to_vec();
+        self.interior.solve_many(&mut x);
+        for (b, x) in columns.iter_mut().zip(&x) {
+            for (i, col, val) in self.rows() {
+                let pulled: f64 = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]).sum();
+                b[i] -= pulled;
+            }
+        }
+    }
+
+    /// u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ); u_Γ is left as it is.
+    fn backward(&self, columns: &mut [Vec<f64>]) {
+        let on_interface =
+            |b: &Vec<f64>| -> Vec<f64> { self.interface.iter().map(|&i| b[i as usize]).collect() };
+        let u: Vec<Vec<f64>> = columns.iter().map(on_interface).collect();
+        for (b, u) in columns.iter_mut().zip(&u) {
+            for ((_, col, val), u) in self.rows().zip(u) {
+                for (&j, v) in col.iter().zip(val) {
+                    b[j as usize] -= v * u;
+                }
+            }
+        }
+        self.interior.solve_many(columns);
+        for (b, u) in columns.iter_mut().zip(&u) {
+            for (&i, &u) in self.interface.iter().zip(u) {
+                b[i as usize] = u;
+            }
+        }
+    }
+
+    /// Applies `work` to a single vector.
+    fn one(&self, b: &mut [f64], work: impl Fn(&Condensation, &mut [Vec<f64>])) {
+        let mut columns = [b.to_vec()];
+        work(self, &mut columns);
+        b.copy_from_slice(&columns[0]);
+    }
+
+    fn bytes(&self) -> usize {
+        self.interior.bytes() + 12 * self.coupling.nnz()
+    }
+}

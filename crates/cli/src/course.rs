@@ -1,0 +1,274 @@
+//! The course of a solve over the load steps of its scene.
+
+use std::path::Path;
+
+use super::early::Early;
+use super::events::Events;
+use super::fields::{Gathered, Place};
+use super::first_rank::on_first_rank;
+use super::renewed::Renewed;
+use super::{balance, contact};
+use crate::checkpoint::{Checkpoints, Resumed};
+use base::Result;
+use fetifeti::substructures::SolvedRow;
+use fetifeti::{FetiFeti, Solution, Status};
+use parallel::exchange::total;
+use petsc::signals::{self, Heeded};
+use petsc::Session;
+use report::destination::Destination;
+use report::json::certified::Certified;
+use report::json::contact::{BodyBalance, LoadStep, OuterStep};
+use report::paraview::pvd::Pvd;
+use report::progress::Progress;
+use scene::sliding::{self, Sliding};
+use scene::{distribution, Displaced, Scene, Stepping};
+
+/// The results over the load steps.
+pub(super) struct Course {
+    /// The last solution.
+    pub solution: Solution,
+    /// The load step of this solution.
+    pub step: usize,
+    /// The bounds of its error, if they were asked for.
+    pub certified: Option<Certified>,
+    /// Its potential energy, with that of given values.
+    pub energy: f64,
+    pub outer: Vec<OuterStep>,
+    pub load_steps: Vec<LoadStep>,
+    /// Krylov iterations per outer step, or per load step without inequalities.
+    pub iterations: Vec<usize>,
+    pub solve_seconds: f64,
+    pub recover_seconds: f64,
+    /// Rows of B_gl on rank 0.
+    pub rows: Vec<SolvedRow>,
+    /// The scene with the contacts of this solution, where load steps renew them.
+    pub scene: Option<Scene>,
+    /// The forces on every body in balance, on rank 0.
+    pub balances: Vec<BodyBalance>,
+    /// What is not in balance, on rank 0.
+    pub unbalanced: Option<String>,
+    /// In elasticity with contact, how far the sides that touch have slid since the pairing was made.
+    pub slides: Option<contact::Slides>,
+    /// The fields of this solution, where load steps are written.
+    pub fields: Option<Gathered>,
+}
+
+/// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
+/// is one. Collective.
+pub(super) fn follow(
+    session: &Session,
+    scene: &Scene,
+    solver: &mut FetiFeti,
+    destination: &Destination,
+    place: Place,
+    (checkpoints, events): (Checkpoints, &Events),
+) -> Result<Course> {
+    let n = scene.n_steps();
+    let times = scene.steps.as_ref().map(|s| s.times.clone());
+    let owns = distribution::owner(session, scene)?;
+    let mut progress = Progress::new(session.rank() == 0 && !destination.quiet);
+    let mut course: Option<Course> = None;
+    let mut pvd = destination
+        .out
+        .as_ref()
+        .map(|dir| Pvd::new(dir.join("solution.pvd")));
+    let mut renewed = Renewed::new(scene);
+    if let Some((step, left)) = checkpoints.left() {
+        let made = renewed.resume(session, &owns, solver, (step, left));
+        made.map_err(|e| renewed.at_step(step, e))?;
+    }
+    let mut checkpoints = checkpoints.attach(session, solver)?;
+    let Resumed {
+        load_step: first,
+        mut records,
+        mut state,
+    } = checkpoints.resume(session)?;
+    if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
+        session.agree(list_before(session, dir, &times[..first], place, pvd))?;
+    }
+    let (mut seconds, mut strained) = ([0.0; 2], 0.0);
+    // With a single load step the substructures have its loads already.
+    let many = (n > 1).then(|| {
+        let mine = solver.problem().local.iter().map(|s| s.index);
+        session.agree(Stepping::new(scene, mine))
+    });
+    let mut stepping = many.transpose()?;
+    let mut fields: Option<Gathered> = None;
+    let mut early = Early::new(session, scene, solver)?;
+    // From here on there are results to keep; before, a signal ends the program at once.
+    let _signals = Heeded::watch();
+    for step in first..n {
+        if n > 1 {
+            progress.load_step(step, n);
+        }
+        let set_up = match &course {
+            Some(last) => renewed
+                .renew(session, &owns, solver, last, step)
+                .map_err(|e| renewed.at_step(step, e))?,
+            None => None,
+        };
+        if let Some((start, _)) = &set_up {
+            state.clone_from(start);
+            checkpoints.renewed(solver, renewed.start());
+            if let Some(state) = &state {
+                checkpoints.save(session, step, || records.clone(), state)?;
+            }
+        }
+        let scene = renewed.scene();
+        if let Some(stepping) = &mut stepping {
+            let loads = session.agree(stepping.loads(step))?;
+            solver.set_loads(loads, &scene.gaps(&owns, step)?);
+        }
+        let load_step = if times.is_some() { step + 1 } else { 0 };
+        let mut outer = records.take(load_step);
+        let solved = early.solve(solver, scene, step, state.as_ref(), &mut |done, state| {
+            outer.push(contact::outer_step(load_step, outer.len() + 1, done));
+            progress.step(outer.len(), done.active);
+            progress.residual(done.residual, done.tolerance, done.iterations);
+            if let Some(last) = outer.last() {
+                events.step(session, last)?;
+            }
+            checkpoints.save(session, step, || records.followed_by(&outer), state)?;
+            signals::heed(session)
+        });
+        let mut solution = solved.map_err(|e| match signals::is_end(&e) {
+            true => checkpoints.ended(e, (step, n), outer.len()),
+            false => renewed.at_step(step, e),
+        })?;
+        progress.finish();
+        let mine = solver.problem().local.iter().map(|s| s.index);
+        let given = session.agree(scene.given_energy(mine, step))?;
+        let given = total(session.comm(), given);
+        let balances = balance::bodies(session, scene, solver, &solution, (step, &mut strained))?;
+        let (fails, unbalanced) = balance::out_of_balance(session, &balances);
+        if fails && solution.converged() {
+            solution.status = Status::Balance;
+        }
+        let rows = contact::rows(session, &solution);
+        let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
+        let (local, u, own) = (&solver.problem().local, &solution.u, solution.rows());
+        let moved = match (scene.is_renewed(), slides) {
+            (true, _) => {
+                let all = Displaced::gather(session, scene, local, u, step);
+                Some(renewed.since(all))
+            }
+            (false, true) => {
+                let bodies = sliding::bodies_of(own);
+                Some(Displaced::near(session, scene, local, u, step, &bodies))
+            }
+            (false, false) => None,
+        };
+        let scene = renewed.scene();
+        let slides = moved.filter(|_| slides);
+        let slides = slides.map(|u| sliding::slid(session, scene, own, &u, step));
+        seconds[0] += solution.solve_seconds;
+        seconds[1] += solution.recover_seconds;
+        let certified = early.record(session, scene, &solution, step);
+        let mut now = Course {
+            step,
+            certified,
+            energy: solution.energy + given,
+            iterations: if outer.is_empty() {
+                vec![solution.iterations]
+            } else {
+                outer.iter().map(|s| s.iterations).collect()
+            },
+            outer,
+            load_steps: Vec::new(),
+            solve_seconds: seconds[0],
+            recover_seconds: seconds[1],
+            solution,
+            rows,
+            balances: balances.into_iter().map(|b| b.record).collect(),
+            unbalanced,
+            slides,
+            scene: None,
+            fields: None,
+        };
+        if let Some(times) = &times {
+            let (setup_seconds, factored) = set_up.map(|(_, cost)| cost).unzip();
+            now.load_steps.push(LoadStep {
+                setup_seconds,
+                factored,
+                ..load_step_record(times[step], &now)
+            });
+        }
+        if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
+            let fields = match &mut fields {
+                Some(fields) => fields,
+                None => fields.insert(Gathered::new(session, scene, solver, place)?),
+            };
+            fields.gather(session, scene, solver, &now.solution, step);
+            let name = step_name(step);
+            fields.write_vtu(session, scene, &now.solution, &now.rows, dir, &name)?;
+            let file = dir.join(place.file(&name));
+            on_first_rank(session, || pvd.add(times[step], &file))?;
+        }
+        let done = course.insert(now);
+        records.outer.append(&mut done.outer);
+        records.load_steps.append(&mut done.load_steps);
+        records.iterations.append(&mut done.iterations);
+        if !done.solution.converged() {
+            break;
+        }
+        if step + 1 < n {
+            let next = done.solution.warm_start();
+            // Where contacts are renewed, the next step has other rows.
+            if !renewed.scene().is_renewed() {
+                checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            }
+            state = Some(next);
+        }
+    }
+    let last = course.expect("a scene has at least one load step");
+    Ok(Course {
+        outer: records.outer,
+        load_steps: records.load_steps,
+        iterations: records.iterations,
+        fields,
+        scene: renewed.into_scene(),
+        ..last
+    })
+}
+
+/// Lists the files of an interrupted run at the front of the time series.
+fn list_before(
+    session: &Session,
+    dir: &Path,
+    times: &[f64],
+    place: Place,
+    pvd: &mut Pvd,
+) -> Result<()> {
+    if session.rank() > 0 {
+        return Ok(());
+    }
+    for (step, &t) in times.iter().enumerate() {
+        let file = dir.join(place.file(&step_name(step)));
+        if file.is_file() {
+            pvd.add(t, &file)?;
+        }
+    }
+    Ok(())
+}
+
+/// Name of the file of load step `step`, without its extension.
+fn step_name(step: usize) -> String {
+    format!("step_{:04}", step + 1)
+}
+
+/// The record of a load step; forces are known on rank 0.
+fn load_step_record(t: f64, course: &Course) -> LoadStep {
+    let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
+    let all = course.slides.as_ref().map(|all| all.values().copied());
+    let slid = all.map(|all| all.fold(Sliding::default(), Sliding::max));
+    LoadStep {
+        t,
+        outer_iterations: course.iterations.len(),
+        iterations: course.iterations.iter().sum(),
+        active: inequalities().filter(|r| r.holds()).count(),
+        energy: course.energy,
+        contact_force: inequalities().map(|r| r.multiplier).sum(),
+        slid: contact::recorded(slid),
+        ..LoadStep::default()
+    }
+}

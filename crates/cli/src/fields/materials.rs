@@ -1,0 +1,91 @@
+//! The materials of bodies, where they are few.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Place;
+use parallel::exchange::gather_all;
+use petsc::Session;
+use scene::assembly::SubdomainMesh;
+use scene::{Scene, SteppedMesh};
+
+/// A body of more materials than this has one point per node.
+const MOST: usize = 16;
+
+/// ρ, or Young's modulus, and Poisson's ratio, as bits.
+type Key = [u64; 2];
+
+/// The materials of every body.
+pub(super) struct Materials(BTreeMap<usize, BTreeSet<Key>>);
+
+/// The materials of one body.
+pub(super) struct OfBody(Vec<Key>);
+
+impl Materials {
+    /// Those of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
+    pub fn new(session: &Session, scene: &Scene, parts: &[SteppedMesh], place: Place) -> Materials {
+        // Scalar fields have no stress.
+        match scene.form.is_elastic() {
+            true => Materials::told_apart(session, parts, place),
+            false => Materials(BTreeMap::new()),
+        }
+    }
+
+    /// The same, in scalar problems, too. Collective.
+    pub fn told_apart(session: &Session, parts: &[SteppedMesh], place: Place) -> Materials {
+        let mut all = Materials(BTreeMap::new());
+        for mesh in parts.iter().map(SteppedMesh::mesh) {
+            let mut last = None;
+            for key in (0..mesh.n_elements()).map(|e| key(mesh, e)) {
+                if last.replace(key) != Some(key) {
+                    all.add(mesh.body, key);
+                }
+            }
+        }
+        if place == Place::EachRank {
+            let pairs = all
+                .0
+                .iter()
+                .flat_map(|(b, keys)| keys.iter().map(move |k| (*b, *k)));
+            let words: Vec<u64> = pairs.flat_map(|(b, [r, p])| [b as u64, r, p]).collect();
+            for words in gather_all(session.comm(), &words) {
+                for w in words.chunks_exact(3) {
+                    all.add(w[0] as usize, [w[1], w[2]]);
+                }
+            }
+        }
+        all
+    }
+
+    fn add(&mut self, body: usize, key: Key) {
+        let keys = self.0.entry(body).or_default();
+        if keys.len() <= MOST {
+            keys.insert(key);
+        }
+    }
+
+    /// Those of a body.
+    pub fn of(&self, body: usize) -> OfBody {
+        let keys = self.0.get(&body).filter(|keys| keys.len() <= MOST);
+        OfBody(keys.into_iter().flatten().copied().collect())
+    }
+}
+
+impl OfBody {
+    /// Number of materials that are told apart.
+    pub fn count(&self) -> usize {
+        self.0.len().max(1)
+    }
+
+    /// The number of the material of an element.
+    pub fn number(&self, mesh: &SubdomainMesh, e: usize) -> usize {
+        match self.0.len() {
+            0 | 1 => 0,
+            _ => self.0.binary_search(&key(mesh, e)).unwrap_or(0),
+        }
+    }
+}
+
+fn key(mesh: &SubdomainMesh, e: usize) -> Key {
+    let poisson = mesh.poisson.get(e).copied().unwrap_or(0.0);
+    [mesh.rho[e], poisson].map(f64::to_bits)
+}

@@ -1,0 +1,126 @@
+//! The tables of `fetifeti plan`: bodies, the faces where they touch, rigid surfaces.
+
+use fetifeti::feti::cost::sizes::Sizes;
+use report::tables::table::Table;
+use scene::{BodyPlan, InterfacePlan, Plan, Scene, SidePair};
+
+/// Bodies and interfaces are listed one by one up to this number.
+pub(super) const LIST: usize = 24;
+
+/// The bodies with their sizes, and how far they are held.
+pub(super) fn bodies(plan: &Plan, sizes: &Sizes) -> String {
+    // Only solids have elements in z.
+    let solid = plan.bodies.iter().any(|b| b.elements[2] > 0);
+    // A mesh of cells has no rows of elements.
+    let dim = |b: &BodyPlan| match b.elements[1] {
+        0 => 1,
+        _ => 2 + usize::from(solid),
+    };
+    let kernel = |defect: usize| match defect {
+        0 => "held".into(),
+        d => format!("floats ({d})"),
+    };
+    let table = Table::of(plan.bodies.iter().zip(&sizes.defect).take(LIST))
+        .words("body", |(b, _)| &b.name)
+        .numbers("elements", |(b, _)| grid(b.elements, dim(b)))
+        .numbers("subdomains", |(b, _)| grid(b.subdomains, dim(b)))
+        .numbers("dofs", |(b, _)| b.dofs)
+        .numbers("prescribed", |(b, _)| b.prescribed)
+        .numbers("primal", |(b, _)| b.primal)
+        .numbers("kernel", |(_, defect)| kernel(**defect))
+        .table();
+    format!("{table}{}\n", more(plan.bodies.len(), "bodies"))
+}
+
+/// A line on what a list has beyond the first [`LIST`].
+fn more(count: usize, what: &str) -> String {
+    match count.saturating_sub(LIST) {
+        0 => String::new(),
+        n => format!("... and {n} more {what}\n"),
+    }
+}
+
+/// A number in four digits.
+fn short(x: f64) -> String {
+    match x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        true => format!("{}", format!("{x:.3e}").parse::<f64>().unwrap_or(x)),
+        false => format!("{x:.3e}"),
+    }
+}
+
+/// Counts in x, y and z, such as "16 x 16 x 16".
+fn grid(counts: [usize; 3], dim: usize) -> String {
+    let each: Vec<String> = counts[..dim].iter().map(usize::to_string).collect();
+    each.join(" x ")
+}
+
+/// The pairs of bodies that touch or face each other, with the area, the gaps and the angle between their sides.
+pub(super) fn interfaces(scene: &Scene, plan: &Plan) -> String {
+    let surfaces = surfaces(scene);
+    if plan.interfaces.is_empty() {
+        return surfaces;
+    }
+    let faces = plan
+        .interfaces
+        .iter()
+        .enumerate()
+        .filter(|(_, i)| !i.corner);
+    let name = |b: usize| &plan.bodies[b].name;
+    let listed: Vec<(&InterfacePlan, SidePair)> = faces
+        .clone()
+        .take(LIST)
+        .map(|(k, i)| (i, scene.side_pair(k)))
+        .collect();
+    let table = Table::of(&listed)
+        .words("touch", |(i, _)| match i.bodies {
+            [a, b] if a == b => format!("{} - itself", name(a)),
+            [a, b] => format!("{} - {}", name(a), name(b)),
+        })
+        .numbers("nodes", |(i, _)| i.nodes)
+        .numbers("tied", |(i, _)| i.tied)
+        .when(plan.contact_pairs > 0, |t| {
+            t.numbers("contact", |(i, _)| i.contact)
+        })
+        .numbers(size(scene), |(_, p)| short(p.area))
+        .numbers("gap", |(_, p)| range(p.gap))
+        .numbers("angle", |(_, p)| format!("{:.1}°", p.angle))
+        .when(listed.iter().any(|(i, _)| i.multipliers.is_some()), |t| {
+            t.words("mortar", |(i, _)| match i.multipliers {
+                Some(b) => format!("multipliers on {}", name(b)),
+                None => "nodes match".into(),
+            })
+        })
+        .table();
+    format!("{table}{}\n{surfaces}", more(faces.count(), "faces"))
+}
+
+/// What the size of a side is called.
+fn size(scene: &Scene) -> &'static str {
+    match scene.dim() == 2 && !scene.form.is_axial() {
+        true => "length",
+        false => "area",
+    }
+}
+
+/// The smallest and the largest gap.
+fn range([low, high]: [f64; 2]) -> String {
+    match low == high {
+        true => short(low),
+        false => format!("{} to {}", short(low), short(high)),
+    }
+}
+
+/// The rigid surfaces beside bodies.
+fn surfaces(scene: &Scene) -> String {
+    let all = scene.surface_obstacles();
+    if all.is_empty() {
+        return String::new();
+    }
+    let table = Table::of(all.iter().take(LIST))
+        .words("rigid surface", |s| &s.name)
+        .numbers("nodes", |s| s.nodes)
+        .numbers(size(scene), |s| short(s.area))
+        .numbers("gap", |s| range(s.gap))
+        .table();
+    format!("{table}{}\n", more(all.len(), "rigid surfaces"))
+}

@@ -1,0 +1,189 @@
+//! Contacts that are renewed at each load step: the scene with the present ones, the rows that the solver gets, and
+//! where its loop starts.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use super::course::Course;
+use base::{Error, Result};
+use fetifeti::contact::State;
+use fetifeti::feti::subdomain::problem::factorisations;
+use fetifeti::substructures::{BodyNode, RowKind, RowLabel, RowSource, SolvedRow};
+use fetifeti::FetiFeti;
+use parallel::exchange::total;
+use petsc::Session;
+use scene::{Displaced, Scene};
+
+/// A scene whose contacts are renewed, or stay as they are.
+pub(super) struct Renewed<'a> {
+    scene: &'a Scene,
+    /// The scene with the contacts of the present load step.
+    present: Option<Box<Scene>>,
+    /// The displacements at the end of the last step, and those for which the present contacts were made.
+    end: Displaced,
+    start: Displaced,
+}
+
+/// What a renewal costs: seconds of set-up, and subdomains that were factored, over all ranks.
+type Cost = (f64, usize);
+
+impl<'a> Renewed<'a> {
+    pub fn new(scene: &'a Scene) -> Renewed<'a> {
+        Renewed {
+            scene,
+            present: scene.is_renewed().then(|| Box::new(scene.clone())),
+            end: Displaced::default(),
+            start: Displaced::default(),
+        }
+    }
+
+    /// The scene with the present contacts.
+    pub fn scene(&self) -> &Scene {
+        self.present.as_deref().unwrap_or(self.scene)
+    }
+
+    /// The same, if contacts are renewed.
+    pub fn into_scene(self) -> Option<Scene> {
+        self.present.map(|scene| *scene)
+    }
+
+    /// Notes the displacements at the end of a step; returned are those since the present contacts were made.
+    pub fn since(&mut self, u: Displaced) -> Displaced {
+        match self.present {
+            Some(_) => {
+                let out = u.since(&self.start);
+                self.end = u;
+                out
+            }
+            None => u,
+        }
+    }
+
+    /// The displacements for which the present contacts were made.
+    pub fn start(&self) -> &Displaced {
+        &self.start
+    }
+
+    /// Renews the contacts for load step `step`, which a checkpoint is in, where the step before has left the bodies.
+    /// Collective.
+    ///
+    /// # Errors
+    /// As [`Renewed::renew`].
+    pub fn resume(
+        &mut self,
+        session: &Session,
+        owns: &dyn Fn(usize) -> bool,
+        solver: &mut FetiFeti,
+        (step, left): (usize, Displaced),
+    ) -> Result<()> {
+        if self.present.is_none() {
+            return Ok(());
+        }
+        self.end = left;
+        self.renew_at_end(session, step)?;
+        solver.set_rows(self.scene().rows(owns))
+    }
+
+    /// Renews the contacts at the displacements of the end of the last step. Collective.
+    fn renew_at_end(&mut self, session: &Session, step: usize) -> Result<()> {
+        if let Some(scene) = &mut self.present {
+            session.agree(scene.renew(&self.end, step))?;
+            self.start.clone_from(&self.end);
+        }
+        Ok(())
+    }
+
+    /// Renews the contacts for load step `step` after the solution `last`. Returned are the start of the contact loop
+    /// and the cost; `None` where contacts stay as they are. Collective.
+    ///
+    /// # Errors
+    /// Given values that contradict an inequality, a body that nothing holds any more.
+    pub fn renew(
+        &mut self,
+        session: &Session,
+        owns: &dyn Fn(usize) -> bool,
+        solver: &mut FetiFeti,
+        last: &Course,
+        step: usize,
+    ) -> Result<Option<(Option<State>, Cost)>> {
+        let Some(scene) = &self.present else {
+            return Ok(None);
+        };
+        let (clock, before) = (Instant::now(), factorisations());
+        let solved = SolvedRow::on_all_ranks(session.comm(), last.solution.rows());
+        let mut known: HashMap<Place, (f64, bool)> = HashMap::new();
+        for row in &solved {
+            let value = (row.multiplier, row.holds());
+            for place in places(scene, &row.label, row.is_inequality()) {
+                known.insert(place, value);
+            }
+        }
+        self.renew_at_end(session, step)?;
+        let scene = self.scene();
+        let rows = scene.rows(owns);
+        let start = rows.iter().map(|row| {
+            let inequality = row.kind == RowKind::Inequality;
+            let place = places(scene, &row.label, inequality).next();
+            known.get(&place?).copied()
+        });
+        let start: Vec<Option<(f64, bool)>> = start.collect();
+        solver.set_rows(rows)?;
+        let found = start.iter().filter(|s| s.is_some()).count();
+        // Rows that are new hold to begin with, as all do where nothing is known.
+        let new = |s: Option<(f64, bool)>| s.unwrap_or((0.0, true));
+        let start: Vec<(f64, bool)> = start.into_iter().map(new).collect();
+        let some = total(session.comm(), found as f64) > 0.0;
+        let state = some.then(|| solver.start(last.solution.inside_bodies(), &start));
+        let factored = (factorisations() - before) as f64;
+        let factored = total(session.comm(), factored) as usize;
+        Ok(Some((state, (clock.elapsed().as_secs_f64(), factored))))
+    }
+}
+
+impl Renewed<'_> {
+    /// An error of load step `step`, from 0: with renewed contacts it says which step that is.
+    pub fn at_step(&self, step: usize, error: Error) -> Error {
+        match error {
+            Error::Input(what) if self.present.is_some() && step > 0 => Error::Input(format!(
+                "load step {}, with contacts between sides that face each other where the step before has left the \
+                 bodies: {what}",
+                step + 1
+            )),
+            other => other,
+        }
+    }
+}
+
+/// Where a row is: what it joins its node to, the node, and the direction of an equation.
+type Place = (RowSource, BodyNode, usize);
+
+/// The places of a row: first that of the node that carries its multiplier. Interfaces are named by the other body.
+fn places(scene: &Scene, label: &RowLabel, inequality: bool) -> impl Iterator<Item = Place> {
+    let n = label.normal.map(f64::abs);
+    let direction = match inequality {
+        true => 3,
+        false => (0..3).max_by(|&a, &b| n[a].total_cmp(&n[b])).unwrap_or(0),
+    };
+    let [first, second] = match label.source {
+        RowSource::Interface(k) => {
+            let interface = &scene.interfaces[k];
+            let own = interface.mortar.as_ref().map(|m| m.multipliers);
+            let [a, b] = match own {
+                Some(own) if own != interface.order[0] => [label.members[1], label.members[0]],
+                _ => label.members,
+            };
+            let place = |at: Option<BodyNode>, other: Option<BodyNode>| {
+                Some((RowSource::Interface(other?.body), at?, direction))
+            };
+            // The other body may carry the multipliers next.
+            let other = match own {
+                None => place(b, a),
+                Some(_) => None,
+            };
+            [place(a, b), other]
+        }
+        RowSource::Obstacle(_) => [label.members[0].map(|m| (label.source, m, direction)), None],
+        RowSource::Equation(_) => [Some((label.source, BodyNode { body: 0, node: 0 }, 0)), None],
+    };
+    first.into_iter().chain(second)
+}

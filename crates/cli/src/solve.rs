@@ -1,0 +1,293 @@
+//! `fetifeti solve`.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::Solve;
+use super::contact;
+use super::course::{follow, Course};
+use super::events::Events;
+use super::fields::{Gathered, Place};
+use super::first_rank::on_first_rank;
+use super::record::{checks, report};
+use super::values::Values;
+use super::{doubts, inputs, maps, picture, smoothed};
+use crate::checkpoint::Checkpoints;
+use base::{Error, Result};
+use fetifeti::feti::MethodSettings;
+use fetifeti::substructures::BodyNode;
+use fetifeti::{FetiFeti, Status};
+use petsc::{give_back, Session};
+use report::destination::Destination;
+use report::json::probes::NodePrint;
+use report::json::SolveReport;
+use report::output;
+use report::pictures::contact_map;
+use report::plots::{load_steps, profile};
+use report::tables::summary;
+use scene::{distribution, fits, DeckScenes, Scene};
+
+/// Number of directions that a load step passes on to the next one.
+const DIRECTIONS: usize = 30;
+
+/// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
+pub fn run(session: &Session, args: Solve) -> Result<()> {
+    let clock = Instant::now();
+    let destination = Destination::from(args.results.clone());
+    if DeckScenes::is_deck(&args.scene) {
+        return run_deck(session, &args, &destination);
+    }
+    let scene = distribution::load_part(session, &args.scene)?;
+    on_first_rank(session, || {
+        destination.prepare()?;
+        destination.print(&lines(&scene.sentences()))
+    })?;
+    solve(session, &args, &destination, &scene, clock, None)?;
+    Ok(())
+}
+
+/// Solves the steps of a deck one after the other; each is a linear problem of its own. With several steps the results
+/// of each are in a directory of their own, and the report is that of the last.
+fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Result<()> {
+    let in_full = fits::is_in_full(session)?;
+    let deck = session.agree(DeckScenes::load(&args.scene))?;
+    let deck = deck.integrated(in_full);
+    on_first_rank(session, || destination.prepare())?;
+    let stem = args
+        .scene
+        .file_stem()
+        .map(|s| s.to_string_lossy().into_owned());
+    let stem = stem.unwrap_or_default();
+    let mut told = deck.notes();
+    on_first_rank(session, || destination.print(&lines(&told)))?;
+    // Only rank 0 has tables.
+    let mut printed = Vec::new();
+    let n = deck.n_steps();
+    for step in 0..n {
+        let clock = Instant::now();
+        let title = match n {
+            1 => stem.clone(),
+            _ => format!("{stem}, step {}", step + 1),
+        };
+        let scene = session.agree(deck.scene(&title, step))?;
+        distribution::same_on_all_ranks(session, &args.scene, &scene)?;
+        // What steps have in common is said once.
+        let mut new = scene.sentences();
+        new.retain(|note| !told.contains(note));
+        on_first_rank(session, || destination.print(&lines(&new)))?;
+        told.extend(new);
+        let mut of_step = destination.clone();
+        if n > 1 {
+            of_step.out = destination
+                .out
+                .as_ref()
+                .map(|dir| dir.join(format!("step{}", step + 1)));
+            of_step.json = destination.json.clone().filter(|_| step + 1 == n);
+            on_first_rank(session, || of_step.prepare())?;
+        }
+        let deck = FromDeck {
+            deck: &deck,
+            step,
+            printed,
+        };
+        printed = solve(session, args, &of_step, &scene, clock, Some(deck))?;
+    }
+    on_first_rank(session, || match &destination.out {
+        Some(dir) if !printed.is_empty() => {
+            let tables: Vec<deck::Table> = printed.iter().flat_map(|p| p.tables.clone()).collect();
+            output::write_text(&dir.join(format!("{stem}.dat")), &deck::write_dat(&tables))
+        }
+        _ => Ok(()),
+    })?;
+    Ok(())
+}
+
+/// A line for each sentence.
+pub(super) fn lines(notes: &[String]) -> String {
+    notes.iter().map(|note| format!("{note}\n")).collect()
+}
+
+/// The step of a deck that a scene describes.
+struct FromDeck<'a> {
+    deck: &'a DeckScenes,
+    step: usize,
+    /// What earlier steps have printed.
+    printed: Vec<NodePrint>,
+}
+
+/// Solves a scene and writes its results; returned is what the steps of its deck have printed up to this one.
+fn solve(
+    session: &Session,
+    args: &Solve,
+    destination: &Destination,
+    scene: &Scene,
+    clock: Instant,
+    deck: Option<FromDeck>,
+) -> Result<Vec<NodePrint>> {
+    let checkpoints = Checkpoints::new(
+        session,
+        &args.scene,
+        scene,
+        args.checkpoint.as_deref(),
+        args.resume.as_deref(),
+    )?;
+    let events = Events::new(session, args.events.as_deref())?;
+    let name = args.scene.display().to_string();
+    session.agree(fits::solved(session, scene, &name))?;
+    let start = Instant::now();
+    let substructures = distribution::substructures(session, scene)?;
+    give_back(); // what reading took
+    let assemble = start.elapsed().as_secs_f64();
+
+    let settings = MethodSettings {
+        recycle: if scene.steps.is_some() { DIRECTIONS } else { 0 },
+        ..MethodSettings::default()
+    };
+    let mut solver = FetiFeti::new(session, substructures, settings)?;
+    give_back(); // lists of the set-up
+    let place = match args.pieces {
+        true => Place::EachRank,
+        false => Place::FirstRank,
+    };
+    let written = (checkpoints, &events);
+    let course = follow(session, scene, &mut solver, destination, place, written)?;
+    let scene = course.scene.as_ref().unwrap_or(scene);
+    let solution = &course.solution;
+    let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
+        (false, _) => None,
+        (true, Some(step)) if step.exact.is_some() => step.exact,
+        (true, _) => solver.spectrum()?,
+    };
+    let mut report = report(session, scene, &solver, &course, exact)?;
+    if solver.settings().method.check {
+        report.check = Some(checks(&solver, exact)?);
+    }
+    report.seconds.assemble = assemble;
+    if session.rank() == 0 {
+        report.inputs = inputs::of(&args.scene);
+    }
+    report.warnings.extend(course.unbalanced.clone());
+    report
+        .warnings
+        .extend(smoothed::warnings(scene, &course.rows));
+    let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
+    let mut printed = Vec::new();
+    if !scene.probes.is_empty() || asked.is_some() {
+        let values = Values::displacements(session, scene, &solver, solution, course.step)?;
+        let found = match session.rank() {
+            0 => values.probes(scene),
+            _ => Ok(Vec::new()),
+        };
+        report.probes = session.agree(found)?;
+        let forces = match asked {
+            Some(true) => Some(Values::forces(session, scene, &solver, &course)?),
+            _ => None,
+        };
+        if let (0, Some(deck)) = (session.rank(), &deck) {
+            let displacement = |at: BodyNode| values.at(at.body, at.node);
+            let force = |at: BodyNode| forces.as_ref().map_or([0.0; 3], |f| f.at(at.body, at.node));
+            let tables = deck.deck.tables(deck.step, &displacement, &force);
+            printed.extend(tables.into_iter().map(NodePrint::new));
+        }
+    }
+    if let Some(deck) = deck {
+        printed.splice(0..0, deck.printed);
+    }
+    report.node_print.clone_from(&printed);
+    if let Some(dir) = &destination.out {
+        write_fields(session, scene, &solver, &course, place, dir)?;
+    }
+    report.seconds.total = clock.elapsed().as_secs_f64();
+    on_first_rank(session, || write_report(destination, &report, place))?;
+    if solution.converged() {
+        Ok(printed)
+    } else {
+        let scene = args.scene.display();
+        let what = match (solver.facts().inequalities, solution.steps.len()) {
+            (0, _) => format!("the dual problem of {scene}"),
+            (_, n) => format!("the contact problem of {scene} ({n} contact steps)"),
+        };
+        Err(not_converged(&what, &solution.status, solution.iterations))
+    }
+}
+
+/// The error of a solve that stopped early; its results have been written before.
+pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
+    Error::NotConverged(format!(
+        "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
+    ))
+}
+
+/// Prints and writes the record. Warnings are on standard error, also where nothing else is printed.
+fn write_report(destination: &Destination, report: &SolveReport, place: Place) -> Result<()> {
+    let so = "no load drives this, and of all places along it the answer has the one nearest to the start";
+    destination.print(&lines(&doubts::free(&report.free_motions, so)))?;
+    destination.print(&summary::solve(report))?;
+    for warning in &report.warnings {
+        eprintln!("Warning: {warning}");
+    }
+    destination.write_json("report.json", report)?;
+    let solution = place.file("solution");
+    let mut files = files(report);
+    files[0] = &solution;
+    destination.written(&files)
+}
+
+/// The files in a directory of results.
+fn files(report: &SolveReport) -> Vec<&'static str> {
+    let mut out = vec!["solution.vtu", "solution.png", "report.json"];
+    if let Some(contact) = &report.contact {
+        out.push("interfaces.png");
+        // Maps of whole faces would have too many shapes for an SVG file.
+        if report.dimension < 3 {
+            out.push("interfaces.svg");
+        }
+        out.push("interfaces.csv");
+        if !contact.load_steps.is_empty() {
+            out.extend(["solution.pvd", "steps.png", "steps.svg", "steps.csv"]);
+        }
+    }
+    out
+}
+
+/// Writes the fields, the pictures and the profiles along the interfaces; rank 0 writes for all. Collective.
+fn write_fields(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    course: &Course,
+    place: Place,
+    dir: &Path,
+) -> Result<()> {
+    let gathered = |place: Place| {
+        let mut fields = Gathered::new(session, scene, solver, place)?;
+        fields.gather(session, scene, solver, &course.solution, course.step);
+        Ok::<_, Error>(fields)
+    };
+    let mut known = None;
+    let fields = match &course.fields {
+        Some(fields) => fields,
+        None => known.insert(gathered(place)?),
+    };
+    let rows = &course.rows;
+    fields.write_vtu(session, scene, &course.solution, rows, dir, "solution")?;
+    // The picture shows the whole scene.
+    let mut whole = None;
+    let fields = match place {
+        Place::FirstRank => fields,
+        Place::EachRank => whole.insert(gathered(Place::FirstRank)?),
+    };
+    on_first_rank(session, || {
+        picture::write(scene, fields, &course.rows, course.step, dir)?;
+        if solver.facts().inequalities > 0 {
+            match scene.dim() {
+                2 => profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?,
+                _ => contact_map::write(&maps::of(scene, &course.rows), &scene.title, dir)?,
+            };
+        }
+        if !course.load_steps.is_empty() {
+            load_steps::write(&course.load_steps, &scene.title, dir)?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,195 @@
+//! The solution by bodies and nodes on rank 0, and probes.
+
+use super::course::Course;
+use super::fields::to_first_rank;
+use super::row_forces::RowForces;
+use base::{Error, Result};
+use elements::element;
+use fetifeti::{FetiFeti, Solution};
+use parallel::exchange::exchange_words;
+use petsc::Session;
+use report::json::probes::ProbeValue;
+use scene::assembly::{internal_force, SubdomainMesh};
+use scene::{Scene, SteppedMesh};
+
+/// Values at all nodes of every body, C components each, on rank 0; nothing on the other ranks.
+pub(super) struct Values {
+    by_body: Vec<Vec<f64>>,
+    components: usize,
+}
+
+impl Values {
+    /// The displacements of a solution at load step `step`. Collective.
+    pub fn displacements(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        solution: &Solution,
+        step: usize,
+    ) -> Result<Values> {
+        let of = |_: &SubdomainMesh, nodal: Vec<f64>| nodal;
+        let put = |to: &mut f64, u: f64| *to = u;
+        Values::gather(session, scene, solver, (solution, step), &of, &put)
+    }
+
+    /// The forces that act on the nodes from outside, as CalculiX prints them (RF): K u without the forces of contact.
+    /// They are loads and reactions, and the forces of ties and equations. Collective.
+    pub fn forces(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        course: &Course,
+    ) -> Result<Values> {
+        let add = |to: &mut f64, force: f64| *to += force;
+        let of = |mesh: &SubdomainMesh, nodal: Vec<f64>| internal_force(mesh, &nodal);
+        let solved = (&course.solution, course.step);
+        let mut all = Values::gather(session, scene, solver, solved, &of, &add)?;
+        // Rows between sides whose nodes do not match have forces at many nodes.
+        let mut outgoing = vec![Vec::new(); session.size()];
+        RowForces::new(session, scene)?.each(course.solution.rows(), |row, _, at, force| {
+            if row.is_inequality() {
+                outgoing[0].extend([at.body as u64, at.node as u64]);
+                outgoing[0].extend(force.map(f64::to_bits));
+            }
+        });
+        for words in exchange_words(session.comm(), outgoing) {
+            for word in words.chunks_exact(5) {
+                let [body, node] = [word[0] as usize, word[1] as usize];
+                let first = all.components * node;
+                let to = &mut all.by_body[body][first..first + all.components];
+                let force = word[2..].iter().map(|&w| f64::from_bits(w));
+                to.iter_mut().zip(force).for_each(|(to, f)| *to -= f);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Values `of` every subdomain, which `put` puts to the nodes of the bodies. Collective.
+    fn gather(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        (solution, step): (&Solution, usize),
+        of: &dyn Fn(&SubdomainMesh, Vec<f64>) -> Vec<f64>,
+        put: &dyn Fn(&mut f64, f64),
+    ) -> Result<Values> {
+        let scale = scene.prescribed_factor(step);
+        let local = solver.problem().local.iter().map(|sub| sub.index);
+        let nodal = local.clone().zip(&solution.u).map(|(index, u)| {
+            let mut part = SteppedMesh::new(scene, index)?;
+            let mesh = part.at(scale);
+            Ok(of(mesh, mesh.nodal(u)))
+        });
+        let nodal: Vec<Vec<f64>> = session.agree(nodal.collect::<Result<_>>())?;
+        let mut received = to_first_rank(session, local.zip(&nodal));
+        // Sums are taken in the same order on any number of ranks.
+        received.sort_unstable_by_key(|part| part.0);
+        let c = scene.components();
+        let mut by_body = Vec::new();
+        if session.rank() == 0 {
+            by_body = scene
+                .bodies
+                .iter()
+                .map(|b| vec![0.0; c * b.mesh().n_nodes()])
+                .collect();
+        }
+        for (index, _, values) in received {
+            let (body, inside) = scene.body_of(index);
+            let nodes = scene.bodies[body].mesh().subdomain_nodes(inside);
+            for (node, part) in nodes.into_iter().zip(values.chunks_exact(c)) {
+                let to = by_body[body][c * node..c * (node + 1)].iter_mut();
+                to.zip(part).for_each(|(to, &value)| put(to, value));
+            }
+        }
+        Ok(Values {
+            by_body,
+            components: c,
+        })
+    }
+
+    /// The value at a node, with zeros for the components that the scene does not have.
+    pub fn at(&self, body: usize, node: usize) -> [f64; 3] {
+        let c = self.components;
+        let mut out = [0.0; 3];
+        out[..c].copy_from_slice(&self.by_body[body][c * node..c * (node + 1)]);
+        out
+    }
+
+    /// u, and in elasticity the stress, at the probes of a scene. On rank 0.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a probe that lies in no body.
+    pub fn probes(&self, scene: &Scene) -> Result<Vec<ProbeValue>> {
+        scene
+            .probes
+            .iter()
+            .map(|probe| self.probe(scene, probe))
+            .collect()
+    }
+
+    fn probe(&self, scene: &Scene, probe: &scene::ProbeSpec) -> Result<ProbeValue> {
+        let c = self.components;
+        for (b, body) in scene.bodies.iter().enumerate() {
+            if probe
+                .body
+                .as_ref()
+                .is_some_and(|name| *name != body.spec.name)
+            {
+                continue;
+            }
+            let [low, high] = body.bounds;
+            let slack = (0..3)
+                .map(|d| 1e-6 * (high[d] - low[d]))
+                .fold(0.0, f64::max);
+            let x = probe.point;
+            if (0..scene.dim()).any(|d| x[d] < low[d] - slack || x[d] > high[d] + slack) {
+                continue;
+            }
+            for inside in 0..body.mesh().n_subdomains() {
+                let mesh = scene.subdomain_mesh(body.first_subdomain + inside)?;
+                let nodes = body.mesh().subdomain_nodes(inside);
+                for (e, (kind, cell)) in mesh.cells().iter().enumerate() {
+                    let points: Vec<[f64; 3]> =
+                        cell.iter().map(|&k| mesh.points[k as usize]).collect();
+                    let Some(weights) = element::locate(kind, &points, x) else {
+                        continue;
+                    };
+                    let values: Vec<[f64; 3]> = cell
+                        .iter()
+                        .map(|&k| self.at(b, nodes[k as usize]))
+                        .collect();
+                    let u =
+                        (0..c).map(|d| weights.iter().zip(&values).map(|(w, v)| w * v[d]).sum());
+                    let stress = scene.form.is_elastic().then(|| {
+                        let nodal: Vec<f64> = values.iter().flat_map(|v| v[..c].to_vec()).collect();
+                        let mut at = vec![element::NodeStress::default(); points.len()];
+                        let (material, rule) = (mesh.material(e), mesh.integration(e));
+                        element::stress_at_nodes(
+                            kind, mesh.dim, &points, &material, rule, &nodal, &mut at,
+                        );
+                        let sum =
+                            |k: usize| weights.iter().zip(&at).map(|(w, s)| w * s.stress[k]).sum();
+                        (0..6).map(sum).collect::<Vec<f64>>()
+                    });
+                    return Ok(ProbeValue {
+                        name: probe.name.clone(),
+                        body: body.spec.name.clone(),
+                        point: x[..scene.dim()].to_vec(),
+                        u: u.collect(),
+                        stress: stress.unwrap_or_default(),
+                    });
+                }
+            }
+        }
+        let place = match &probe.body {
+            Some(name) => format!("not in body `{name}`"),
+            None => "in no body".into(),
+        };
+        Err(Error::Input(format!(
+            "{}the probe `{}` at {:?} is {place}",
+            probe.written,
+            probe.name,
+            &probe.point[..scene.dim()]
+        )))
+    }
+}

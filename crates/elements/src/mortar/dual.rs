@@ -1,0 +1,251 @@
+//! Dual bases on the faces of the multiplier side, and the rows that follow.
+//!
+//! On a face let p run over the nodes that carry multipliers. Functions φ̂_p with the sum 1 take part of the functions
+//! of the other nodes: where a node of the face carries none, because it lies beyond the other side, is held, or has a
+//! multiplier of another pair, its function goes to the others in equal parts. With M̂ = ∫ φ̂ φ̂ and D̂ = diag ∫ φ̂
+//! over the part of the face that lies opposite the other side,
+//!
+//! ```text
+//!     ψ = D̂ M̂⁻¹ φ̂,    ∫ ψ_p φ̂_q = δ_pq D̂_p,    Σ ψ_p = 1,
+//! ```
+//!
+//! so that constant pressures are in the span of ψ, also beside an edge of the contact zone. On triangles of 6 and
+//! quadrilaterals of 8 nodes ∫ φ_p ≤ 0 at corners, and signs of multipliers would mean nothing: φ̂ there begins with
+//! the locally modified functions of Popp, Wohlmuth, Gee and Wall (2012), of which all integrals are positive.
+
+use std::collections::BTreeMap;
+
+use super::sample::Sample;
+use super::side::Side;
+use crate::kind::CellKind;
+use base::linalg::dense::{self, Dense, Scratch};
+
+/// A node carries a multiplier if its function has at least this part of its integral opposite the other side. Values
+/// far outside would be extrapolated from small parts.
+const COVERED: f64 = 0.1;
+
+/// Part of the functions in the middle of edges that each of the two corners takes, on sides with 6 and 8 nodes.
+const SHARE: f64 = 0.2;
+
+/// A row: Σ own · u − Σ other · u°.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The node of the multiplier side.
+    pub node: u32,
+    /// Nodes of the multiplier side with D_pk / D_p, by increasing number; the coefficients sum to 1.
+    pub own: Vec<(u32, f64)>,
+    /// Nodes of the other side with M_pq / D_p, by increasing number; the coefficients sum to 1.
+    pub other: Vec<(u32, f64)>,
+    /// D_p: the multiplier divided by it is a pressure.
+    pub area: f64,
+}
+
+/// The rows of the nodes of `side` that lie opposite `other`, by increasing node. `samples` are those of both sides,
+/// `excluded` says which nodes of `side` must not carry a multiplier, and `factor` multiplies weights (2π r for rings).
+pub fn rows(
+    side: &Side,
+    other: &Side,
+    samples: &[Sample],
+    excluded: &dyn Fn(u32) -> bool,
+    factor: &dyn Fn([f64; 3]) -> f64,
+) -> Vec<Row> {
+    let faces: Vec<Covered> = samples
+        .chunk_by(|a, b| a.face == b.face)
+        .map(|of_face| Covered::new(side, other, of_face, factor))
+        .collect();
+    let carries = carriers(side, &faces, excluded, factor);
+    let mut sums: BTreeMap<u32, Sum> = BTreeMap::new();
+    for face in &faces {
+        face.add(side, other, &carries, &mut sums);
+    }
+    let finish = |(node, sum): (u32, Sum)| {
+        let share = |(k, v): (u32, f64)| (k, v / sum.area);
+        // What is left of terms that cancel.
+        let counts = |t: &(u32, f64)| t.1.abs() > 1e-13;
+        Row {
+            node,
+            own: sum.own.into_iter().map(share).filter(counts).collect(),
+            other: sum.other.into_iter().map(share).filter(counts).collect(),
+            area: sum.area,
+        }
+    };
+    sums.into_iter().map(finish).collect()
+}
+
+/// The integrals of a row.
+#[derive(Default)]
+struct Sum {
+    own: BTreeMap<u32, f64>,
+    other: BTreeMap<u32, f64>,
+    area: f64,
+}
+
+/// A face of the multiplier side, as far as it lies opposite the other side.
+struct Covered<'s> {
+    face: u32,
+    samples: &'s [Sample],
+    /// The modified functions at the samples, of both sides the values of shape functions, and the weights.
+    modified: Vec<[f64; 9]>,
+    own: Vec<[f64; 9]>,
+    other: Vec<[f64; 9]>,
+    weights: Vec<f64>,
+}
+
+impl<'s> Covered<'s> {
+    fn new(
+        side: &Side,
+        other: &Side,
+        samples: &'s [Sample],
+        factor: &dyn Fn([f64; 3]) -> f64,
+    ) -> Covered<'s> {
+        let face = samples[0].face;
+        let kind = side.faces()[face as usize].kind;
+        let here: Vec<_> = samples.iter().map(|s| side.values(face, s.at)).collect();
+        let there = samples
+            .iter()
+            .map(|s| other.values(s.other, s.opposite).values);
+        Covered {
+            face,
+            samples,
+            modified: here.iter().map(|v| positive(kind, v.values)).collect(),
+            own: here.iter().map(|v| v.values).collect(),
+            other: there.collect(),
+            weights: here
+                .iter()
+                .zip(samples)
+                .map(|(v, s)| s.weight * factor(v.x))
+                .collect(),
+        }
+    }
+
+    /// Adds the integrals of the face to the rows of its nodes.
+    fn add(&self, side: &Side, other: &Side, carries: &[bool], sums: &mut BTreeMap<u32, Sum>) {
+        let nodes = &side.faces()[self.face as usize].nodes;
+        let active: Vec<usize> = (0..nodes.len())
+            .filter(|&a| carries[nodes[a] as usize])
+            .collect();
+        if active.is_empty() {
+            return;
+        }
+        let part = 1.0 / active.len() as f64;
+        let hats: Vec<Vec<f64>> = self
+            .modified
+            .iter()
+            .map(|m| {
+                let rest: f64 = (0..nodes.len())
+                    .filter(|a| !active.contains(a))
+                    .map(|a| m[a])
+                    .sum();
+                active.iter().map(|&a| m[a] + part * rest).collect()
+            })
+            .collect();
+        for ((psi, q), sample) in self.dual(&hats).iter().zip(0..).zip(self.samples) {
+            let theirs = &other.faces()[sample.other as usize].nodes;
+            for (p, &a) in psi.iter().zip(&active) {
+                let sum = sums.entry(nodes[a]).or_default();
+                let weight = self.weights[q] * p;
+                sum.area += weight;
+                for (&k, value) in nodes.iter().zip(&self.own[q]) {
+                    *sum.own.entry(k).or_default() += weight * value;
+                }
+                for (&k, value) in theirs.iter().zip(&self.other[q]) {
+                    *sum.other.entry(k).or_default() += weight * value;
+                }
+            }
+        }
+    }
+
+    /// The dual functions at the samples.
+    fn dual(&self, hats: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let n = hats[0].len();
+        let mut mass = Dense::zeros(n, n);
+        let mut diagonal = vec![0.0; n];
+        for (hat, w) in hats.iter().zip(&self.weights) {
+            for i in 0..n {
+                diagonal[i] += w * hat[i];
+                for j in 0..n {
+                    mass.set(i, j, mass.get(i, j) + w * hat[i] * hat[j]);
+                }
+            }
+        }
+        let size: Vec<f64> = (0..n).map(|i| mass.get(i, i)).collect();
+        let regular = dense::cholesky(mass.view_mut(), &mut Scratch::default()).is_ok()
+            && (0..n).all(|i| mass.get(i, i).powi(2) > SINGULAR * size[i]);
+        let one = |hat: &Vec<f64>| {
+            if !regular {
+                // A sliver, in which no two functions can be told apart: constants remain.
+                return vec![1.0 / n as f64; n];
+            }
+            let mut x = Dense::zeros(n, 1);
+            x.col_mut(0).copy_from_slice(hat);
+            dense::solve_lower(mass.view(), x.view_mut());
+            dense::solve_lower_transpose(mass.view(), x.view_mut());
+            x.col(0).iter().zip(&diagonal).map(|(v, d)| v * d).collect()
+        };
+        hats.iter().map(one).collect()
+    }
+}
+
+/// A mass matrix counts as singular if a pivot is below this part of its diagonal.
+const SINGULAR: f64 = 1e-12;
+
+/// Which nodes of the side carry multipliers.
+fn carriers(
+    side: &Side,
+    faces: &[Covered<'_>],
+    excluded: &dyn Fn(u32) -> bool,
+    factor: &dyn Fn([f64; 3]) -> f64,
+) -> Vec<bool> {
+    let n = side.points().len();
+    let (mut covered, mut whole) = (vec![0.0; n], vec![0.0; n]);
+    for face in faces {
+        let nodes = &side.faces()[face.face as usize].nodes;
+        for (values, w) in face.modified.iter().zip(&face.weights) {
+            nodes
+                .iter()
+                .zip(values)
+                .for_each(|(&k, v)| covered[k as usize] += w * v);
+        }
+    }
+    for face in side.faces() {
+        let x: Vec<[f64; 3]> = face
+            .nodes
+            .iter()
+            .map(|&k| side.points()[k as usize])
+            .collect();
+        let weights = crate::element::side_weights(face.kind, side.dim(), &x);
+        let middle = [0, 1, 2].map(|d| x.iter().map(|x| x[d]).sum::<f64>() / x.len() as f64);
+        let areas = positive(face.kind, weights.area);
+        for (&k, area) in face.nodes.iter().zip(areas) {
+            whole[k as usize] += area * factor(middle);
+        }
+    }
+    let carries = |k: usize| covered[k] > COVERED * whole[k] && !excluded(k as u32);
+    (0..n).map(carries).collect()
+}
+
+/// Whether the shape functions of a face have positive integrals. At the corners of triangles of 6 and quadrilaterals
+/// of 8 nodes these are zero and negative.
+pub fn has_positive_integrals(kind: CellKind) -> bool {
+    !matches!(kind, CellKind::Triangle6 | CellKind::Quad8)
+}
+
+/// Functions with positive integrals whose sum is 1, from shape functions (or their integrals).
+pub fn positive(kind: CellKind, values: [f64; 9]) -> [f64; 9] {
+    if has_positive_integrals(kind) {
+        return values;
+    }
+    let mut out = values;
+    for (edge, ends) in kind.edges().iter().enumerate() {
+        let middle = kind.corners() + edge;
+        out[middle] -= 2.0 * SHARE * values[middle];
+        for &corner in &ends[..2] {
+            out[usize::from(corner)] += SHARE * values[middle];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+#[path = "../../tests/mortar/dual.rs"]
+mod tests;

@@ -1,0 +1,75 @@
+//! K, f and the inequalities of a scene, and how far vectors are from satisfying them.
+
+use super::groups::Groups;
+use super::rows::Inequalities;
+use super::system::{Format, System};
+use super::unknowns::{Trace, Unknowns};
+use base::Result;
+use petsc::{Session, Vec as PetscVec};
+use scene::Scene;
+
+/// The assembled problem of a scene with its inequalities.
+pub struct Problem {
+    /// K and f.
+    pub system: System,
+    /// The inequalities; none where the scene has no contact.
+    pub rows: Inequalities,
+    /// Access to the entries of vectors at the unknowns in rows.
+    pub trace: Trace,
+}
+
+impl Problem {
+    /// Assembles the scene. Collective.
+    ///
+    /// # Errors
+    /// Those of the scene and PETSc's.
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        unknowns: &Unknowns,
+        format: Format,
+    ) -> Result<Problem> {
+        let system = System::new(session, scene, unknowns, format)?;
+        let rows = match scene.has_contact() {
+            true => Inequalities::new(scene, unknowns.layout),
+            false => Inequalities::default(),
+        };
+        let trace = Trace::new(&rows, &system.b);
+        Ok(Problem {
+            system,
+            rows,
+            trace,
+        })
+    }
+
+    /// The groups of an active set. Rows are imposed in their order; a row that contradicts earlier ones is removed
+    /// from the set.
+    pub fn groups(&self, active: &mut [bool]) -> Groups {
+        let in_order: Vec<usize> = (0..self.rows.len()).collect();
+        Groups::new(&self.rows, active, &in_order)
+    }
+
+    /// ‖Tᵀ(f − K u)‖₂ relative to the load: the part of the residual that multipliers of the active rows cannot
+    /// balance. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn stationarity(&self, session: &Session, groups: &Groups, u: &PetscVec) -> Result<f64> {
+        let r = u.duplicate()?;
+        let folded = |x: &PetscVec| -> Result<f64> {
+            self.system.residual(x, &r)?;
+            let at = self.trace.get(session.comm(), &r)?;
+            self.trace.set(&r, &groups.fold(&at))?;
+            r.norm2()
+        };
+        let norm = folded(u)?;
+        if self.system.reference > 0.0 {
+            return Ok(self.system.relative(norm));
+        }
+        // Without a load the norm is relative to Tᵀ K u₀.
+        let given = u.duplicate()?;
+        self.trace.set(&given, &groups.offset)?;
+        let size = folded(&given)?;
+        Ok(if size > 0.0 { norm / size } else { norm })
+    }
+}

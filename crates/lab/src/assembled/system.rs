@@ -1,0 +1,280 @@
+//! A u = b of a scene for PETSc's solvers: one unknown in the place of the copies of tied bodies.
+//!
+//! With inequalities, A is K without them; it is singular where only contact holds a body. On the unknowns of an active
+//! set the system is Tᵀ K T v = Tᵀ(f − K u₀).
+
+use base::Result;
+use fetifeti::substructures::Subdomain;
+use parallel::contiguous_share;
+use petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
+use scene::Scene;
+
+use super::layout::Layout;
+use super::unknowns::Unknowns;
+
+/// The format of the matrix that a method takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// One assembled matrix (AIJ), rows in equal shares.
+    Assembled,
+    /// One matrix per part of the domain, unassembled (MATIS).
+    Unassembled,
+}
+
+/// The weights in the mean of the copies of an unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Copies {
+    /// By ρ, as in the method's own scaling.
+    ByCoefficient,
+    /// All equal.
+    Alike,
+}
+
+/// The assembled problem on N unknowns.
+pub struct System {
+    /// A, N × N, symmetric positive definite unless bodies are held by inequalities only.
+    pub a: Mat,
+    /// b, length N.
+    pub b: PetscVec,
+    /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: residuals are relative to it.
+    pub reference: f64,
+    /// The component of each local unknown of this rank in the unassembled format.
+    pub fields: Vec<usize>,
+}
+
+impl System {
+    /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix; the
+    /// assembled format is converted from the unassembled one. Collective.
+    ///
+    /// # Errors
+    /// As [`Scene::subdomain`], and PETSc's.
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        unknowns: &Unknowns,
+        format: Format,
+    ) -> Result<System> {
+        let (ranks, rank) = (session.size(), session.rank());
+        let share = contiguous_share(scene.n_subdomains(), ranks, rank);
+        let mine: Result<Vec<Subdomain>> = share.clone().map(|s| scene.subdomain(s)).collect();
+        let mine = session.agree(mine)?;
+        let part = Part::new(session, &mine, unknowns)?;
+        let owned = match format {
+            Format::Assembled => unknowns.share(ranks, rank),
+            Format::Unassembled => unknowns.range(share),
+        };
+        let b = PetscVec::mpi(session, owned.len())?;
+        Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
+        let all = unknowns.are_all() && !unknowns.layout.has_dependent();
+        let mut reference = match all {
+            true => b.norm2()?,
+            false => norm_f(session, &mine, unknowns.layout)?,
+        };
+        if reference == 0.0 {
+            reference = b.norm2()?;
+        }
+        drop(mine);
+        let unassembled = Mat::unassembled(session, owned.len(), &part.unknowns, &part.k)?;
+        let fields = part.fields;
+        let a = match format {
+            Format::Assembled => unassembled.convert("aij")?,
+            Format::Unassembled => unassembled,
+        };
+        let held = unknowns.are_free() && scene.has_contact();
+        a.set_flag(if held {
+            MatFlag::Symmetric
+        } else {
+            MatFlag::Spd
+        })?;
+        Ok(System {
+            a,
+            b,
+            reference,
+            fields,
+        })
+    }
+
+    /// r ← b − A u.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn residual(&self, u: &PetscVec, r: &PetscVec) -> Result<()> {
+        self.a.mult(u, r)?;
+        r.aypx(-1.0, &self.b)
+    }
+
+    /// ‖b − A u‖₂ / ‖f‖₂; relative to ‖A u‖₂ where f and b are zero. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn relative_residual(&self, u: &PetscVec) -> Result<f64> {
+        let r = u.duplicate()?;
+        self.residual(u, &r)?;
+        Ok(self.relative(r.norm2()?))
+    }
+
+    /// `norm` relative to the load.
+    pub fn relative(&self, norm: f64) -> f64 {
+        match self.reference {
+            reference if reference > 0.0 => norm / reference,
+            _ => norm,
+        }
+    }
+
+    /// √(uᵀ A u). Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn energy_norm(&self, u: &PetscVec) -> Result<f64> {
+        let au = u.duplicate()?;
+        self.a.mult(u, &au)?;
+        Ok(u.dot(&au)?.max(0.0).sqrt())
+    }
+
+    /// Assembles subdomain vectors whose copies may differ by the error of the iteration: at each unknown of the scene
+    /// the weighted mean of the copies, converted to w; and the sum of the weights. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn mean(
+        &self,
+        session: &Session,
+        subdomains: &[Subdomain],
+        u: &[Vec<f64>],
+        unknowns: &Unknowns,
+        copies: Copies,
+    ) -> Result<(PetscVec, PetscVec)> {
+        let places = places(subdomains, unknowns.layout);
+        let each = subdomains.iter().flat_map(|s| &s.rho);
+        let weights: Vec<f64> = match copies {
+            Copies::ByCoefficient => each.copied().collect(),
+            Copies::Alike => each.map(|_| 1.0).collect(),
+        };
+        let weighted = u.iter().flatten().zip(&weights);
+        let weighted: Vec<f64> = weighted.map(|(u, w)| u * w).collect();
+        let (sum, weight) = (self.b.duplicate()?, self.b.duplicate()?);
+        let local = PetscVec::from_slice(session, &weighted)?;
+        let scatter = Scatter::new(&sum, &places, &local)?;
+        scatter.reverse_add(&local, &sum)?;
+        scatter.reverse_add(&PetscVec::from_slice(session, &weights)?, &weight)?;
+        let mean = self.b.duplicate()?;
+        mean.pointwise_divide(&sum, &weight)?;
+        unknowns.layout.settle(session, &mean)?;
+        Ok((mean, weight))
+    }
+}
+
+/// The place in the layout of every dof of the subdomains.
+fn places(subdomains: &[Subdomain], layout: &Layout) -> Vec<i32> {
+    let dofs = subdomains.iter().flat_map(|s| &s.dofs);
+    dofs.map(|&dof| layout.index(dof) as i32).collect()
+}
+
+/// ‖f‖₂ over the components of u. Collective.
+fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &Layout) -> Result<f64> {
+    let share = layout.share(session.size(), session.rank());
+    let f = PetscVec::mpi(session, share.len())?;
+    let local: Vec<f64> = subdomains.iter().flat_map(|s| s.f.clone()).collect();
+    let local = PetscVec::from_slice(session, &local)?;
+    Scatter::new(&f, &places(subdomains, layout), &local)?.reverse_add(&local, &f)?;
+    f.norm2()
+}
+
+/// The subdomains of one rank, merged into one: the subdomain of PETSc's domain decompositions.
+struct Part {
+    /// Global unknown of each local one, increasing.
+    unknowns: Vec<i32>,
+    /// The component of each unknown.
+    fields: Vec<usize>,
+    k: Mat,
+    f: PetscVec,
+}
+
+/// u at the dofs of a subdomain in terms of local unknowns: (unknown, coefficient) pairs and an offset.
+type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
+
+impl Part {
+    fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<Part> {
+        let mut unknowns: Vec<i32> = Vec::new();
+        for &dof in subdomains.iter().flat_map(|s| &s.dofs) {
+            unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as i32));
+            unknowns.extend(all.void_beside(dof).0.iter().map(|&v| v as i32));
+        }
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        let find = |g: u64| {
+            let found = unknowns.binary_search(&(g as i32));
+            found.expect("every unknown was listed") as i32
+        };
+        let local = |s: &Subdomain| -> RankRows {
+            let terms = s.dofs.iter().map(|&dof| all.terms(dof));
+            let found = |list: Vec<(u64, f64)>| list.into_iter().map(|(g, c)| (find(g), c));
+            terms.map(|(list, o)| (found(list).collect(), o)).collect()
+        };
+        let n = unknowns.len();
+        let mut room = vec![1; n];
+        for s in subdomains {
+            let local = local(s);
+            for (i, (rows, _)) in local.iter().enumerate() {
+                let cols = s.k.row(i).0.iter().map(|&j| local[j as usize].0.len());
+                let most = cols.sum::<usize>() as i32;
+                rows.iter().for_each(|(row, _)| room[*row as usize] += most);
+            }
+        }
+        room.iter_mut().for_each(|r| *r = (*r).min(n as i32));
+        let k = Mat::preallocated(session, Comm::Own, n, n, &room, &[])?;
+        let mut f = vec![0.0; n];
+        let (mut cols, mut vals) = (Vec::new(), Vec::new());
+        for s in subdomains {
+            let local = local(s);
+            for (i, (rows, _)) in local.iter().enumerate() {
+                let (col, val) = s.k.row(i);
+                let entries = || col.iter().zip(val).map(|(&j, &v)| (&local[j as usize], v));
+                let given: f64 = entries().map(|((_, offset), v)| v * offset).sum();
+                for (row, weight) in rows {
+                    f[*row as usize] += weight * (s.f[i] - given);
+                    cols.clear();
+                    vals.clear();
+                    for ((terms, _), v) in entries() {
+                        cols.extend(terms.iter().map(|t| t.0));
+                        vals.extend(terms.iter().map(|t| weight * v * t.1));
+                    }
+                    k.add_values(&[*row], &cols, &vals)?;
+                }
+                // The diagonal entries of void places are of the size of those of the same node.
+                let (void, itself) = all.void_beside(s.dofs[i]);
+                let diagonal = || entries_at(col, val, i);
+                // One without a dof of its own takes those of all others, also where these are void.
+                let own = all.layout.index(s.dofs[i]);
+                let takes = |v: u64| !itself || v == own || all.layout.is_inserted(v);
+                for &v in void.iter().filter(|v| takes(**v)) {
+                    k.add_values(&[find(v)], &[find(v)], &[diagonal()])?;
+                }
+            }
+        }
+        k.assemble()?;
+        k.set_flag(MatFlag::Symmetric)?;
+        let f = PetscVec::from_slice(session, &f)?;
+        let components = all.layout.components();
+        let fields = match (unknowns.first(), unknowns.last()) {
+            (Some(&first), Some(&last)) => {
+                let places = all.places(first as usize..last as usize + 1);
+                let place = |g: &i32| places[(g - first) as usize] as usize;
+                unknowns.iter().map(|g| place(g) % components).collect()
+            }
+            _ => Vec::new(),
+        };
+        Ok(Part {
+            unknowns,
+            fields,
+            k,
+            f,
+        })
+    }
+}
+
+/// The entry in column `i` of a row.
+fn entries_at(col: &[u32], val: &[f64], i: usize) -> f64 {
+    let at = col.iter().position(|&j| j as usize == i);
+    at.map_or(0.0, |k| val[k])
+}

@@ -1,0 +1,91 @@
+//! One solve, and its repetition with smaller tolerances until a given residual of the assembled problem is met.
+
+use super::task::Outcome;
+use base::Result;
+use petsc::Vec as PetscVec;
+
+/// One solve to a tolerance of the method's own residual.
+pub struct Attempt {
+    /// The solution, in the order of the assembled problem.
+    pub u: PetscVec,
+    /// ‖b − A u‖₂ / ‖f‖₂ of the assembled problem.
+    pub residual: f64,
+    /// Whether the method's own tolerance was reached.
+    pub converged: bool,
+    /// The report on the solve. Of the seconds of set-up it has those between solves.
+    pub outcome: Outcome,
+}
+
+impl Attempt {
+    /// The method's report, if this solve is the one that counts: with its own tolerance, a message if the target was
+    /// missed, the seconds of assembly and set-up, and the memory.
+    pub(super) fn report(
+        self,
+        rtol: f64,
+        message: Option<String>,
+        [assemble, setup, memory]: [f64; 3],
+    ) -> Outcome {
+        Outcome {
+            assemble,
+            setup: setup + self.outcome.setup,
+            memory,
+            rtol: self.outcome.iterations.is_some().then_some(rtol),
+            residual: Some(self.residual),
+            message,
+            ..self.outcome
+        }
+    }
+}
+
+/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers
+/// measure another residual; methods that iterate on u meet it at once, or drift from it by rounding. Only one solve is
+/// reported: the one that met the residual, or the one that came closest.
+///
+/// Returns the solve, the tolerance of the method's own residual in it, and a message if the target was missed.
+///
+/// # Errors
+/// Those of `solve`.
+pub fn solve_to(
+    target: f64,
+    first: f64,
+    mut solve: impl FnMut(f64) -> Result<Attempt>,
+) -> Result<(Attempt, f64, Option<String>)> {
+    const SMALLEST: f64 = 1e-16;
+    // A residual counts as smaller below this fraction of the previous one.
+    const GAIN: f64 = 0.9;
+    let mut rtol = first;
+    let mut best: Option<(Attempt, f64)> = None;
+    loop {
+        let now = solve(rtol)?;
+        if now.converged && now.residual <= target {
+            return Ok((now, rtol, None));
+        }
+        if !now.converged && best.is_none() {
+            let message = format!("did not converge: {}", now.outcome.reason);
+            return Ok((now, rtol, Some(message)));
+        }
+        // Stuck: further iterations gain nothing, or none are left.
+        let stuck = best.as_ref().is_some_and(|(best, _)| {
+            let [before, after] = [best, &now].map(|a| a.outcome.iterations);
+            let more = after.is_none() || after > before;
+            !now.converged || (more && now.residual > GAIN * best.residual)
+        });
+        let residual = now.residual;
+        if best
+            .as_ref()
+            .is_none_or(|(best, _)| now.converged && residual < GAIN * best.residual)
+        {
+            best = Some((now, rtol));
+        }
+        if stuck || residual.is_nan() || rtol < SMALLEST {
+            let (best, rtol) = best.expect("the first attempt was kept");
+            let message = format!("the residual stays at {:.1e}", best.residual);
+            return Ok((best, rtol, Some(message)));
+        }
+        rtol *= (0.5 * target / residual).clamp(1e-4, 0.5);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/baselines/attempt.rs"]
+mod tests;

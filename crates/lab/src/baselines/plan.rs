@@ -1,0 +1,192 @@
+//! The plan of a comparison: which methods run, in which layout, and to which residual.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::table::Baseline;
+use super::task::Task;
+use crate::assembled::system::Format;
+use base::{Error, Result};
+use petsc::{Options, Session};
+use report::tables::summary::ranks;
+use scene::Scene;
+
+/// Default of `-compare_inner_rtol`.
+const INNER: f64 = 0.1;
+
+/// Default of `-compare_max_ranks`. A rank takes some 50 MB before it has read anything: 512 of them, one for each
+/// subdomain of a scene of 512 bodies, were more than 24 GB, and the system ended other programs.
+const MAX_RANKS: usize = 256;
+
+/// One method in one layout.
+pub struct Run {
+    /// `None`: ours.
+    pub baseline: Option<&'static Baseline>,
+    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
+    /// `subdomain`.
+    pub layout: &'static str,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
+    /// Parts of the domain that the method sees.
+    pub parts: Option<usize>,
+}
+
+impl Run {
+    /// The method's name.
+    pub fn name(&self) -> &'static str {
+        self.baseline.map_or("fetifeti", |b| b.name)
+    }
+
+    /// Method and ranks, for progress messages.
+    pub fn title(&self) -> String {
+        format!("{} on {}", self.name(), ranks(self.ranks))
+    }
+
+    /// The job; `active`: rows of the last known active set.
+    pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
+        let solution = solution.to_path_buf();
+        match self.baseline {
+            None => Task::FetiFeti {
+                threads: self.threads,
+                solution,
+            },
+            Some(b) => Task::Baseline {
+                name: b.name.into(),
+                rescue,
+                active: active.to_vec(),
+                solution,
+            },
+        }
+    }
+}
+
+/// The layouts in which domain decompositions of PETSc run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layouts {
+    /// A part per subdomain, and a part per core.
+    Two,
+    /// Also a part per body.
+    Three,
+}
+
+/// The runs, and the residual they have to reach.
+pub struct Plan {
+    /// Relative residual.
+    pub rtol: f64,
+    /// Reduction of the residual in a contact step while the active set changes.
+    pub inner: f64,
+    /// Cores that every method may use.
+    pub cores: usize,
+    /// Ranks that a method may have.
+    pub max_ranks: usize,
+    /// Time limit of one method.
+    pub limit: Duration,
+    /// The methods.
+    pub runs: Vec<Run>,
+}
+
+impl Plan {
+    /// The plan according to the options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value out of range, and for a scene whose load steps renew its contacts.
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        baselines: &[&'static Baseline],
+        layouts: Layouts,
+    ) -> Result<Plan> {
+        if scene.is_renewed() {
+            return Err(Error::input(format!(
+                "the scene \"{}\" has `update` in [steps]: its contacts follow from the load steps before, and methods \
+                 are compared on one step alone (a scene without `update` was expected)",
+                scene.title
+            )));
+        }
+        let ours = Options::new(session, "fetifeti_");
+        let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
+        if !(rtol > 0.0 && rtol < 1.0) {
+            return Err(Error::input(format!(
+                "-fetifeti_ksp_rtol is {rtol}, expected a number between 0 and 1"
+            )));
+        }
+        let options = Options::new(session, "compare_");
+        options.heading("Options of compare")?;
+        let all = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let cores = options
+            .usize("cores", all, "cores that every method may use")?
+            .max(1);
+        let max_ranks = options.usize("max_ranks", MAX_RANKS, "ranks that a method may have")?;
+        if cores > max_ranks {
+            return Err(Error::input(format!(
+                "-compare_cores is {cores}, expected at most {max_ranks}, the ranks that a method may have \
+                 (-compare_max_ranks)"
+            )));
+        }
+        let help = "reduction of the residual per contact step while the active set changes";
+        let inner = options.f64("inner_rtol", INNER, help)?;
+        if !(inner > 0.0 && inner < 1.0) {
+            return Err(Error::input(format!(
+                "-compare_inner_rtol is {inner}, expected a number between 0 and 1"
+            )));
+        }
+        let limit = options
+            .usize("time_limit", 600, "seconds after which a method is ended")?
+            .max(1);
+        Ok(Plan {
+            rtol,
+            inner,
+            cores,
+            max_ranks,
+            limit: Duration::from_secs(limit as u64),
+            runs: runs(scene, cores, baselines, layouts),
+        })
+    }
+}
+
+/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on fewer parts; the
+/// others on all cores.
+fn runs(
+    scene: &Scene,
+    cores: usize,
+    baselines: &[&'static Baseline],
+    layouts: Layouts,
+) -> Vec<Run> {
+    let (subdomains, bodies) = (scene.n_subdomains(), scene.n_bodies());
+    let ours = |layout, ranks, threads| Run {
+        baseline: None,
+        layout,
+        ranks,
+        threads,
+        parts: Some(subdomains),
+    };
+    let mut runs = vec![ours("threads", 1, cores)];
+    if cores > 1 && subdomains > 1 {
+        runs.push(ours("ranks", cores.min(subdomains), 1));
+    }
+    for &baseline in baselines {
+        let on = |layout, ranks, parts| Run {
+            baseline: Some(baseline),
+            layout,
+            ranks,
+            threads: 1,
+            parts,
+        };
+        match baseline.format {
+            Format::Assembled => runs.push(on("core", cores, None)),
+            Format::Unassembled => {
+                runs.push(on("subdomain", subdomains, Some(subdomains)));
+                let few = cores.min(subdomains);
+                if layouts == Layouts::Three && few < bodies && bodies < subdomains {
+                    runs.push(on("body", bodies, Some(bodies)));
+                }
+                if few < subdomains {
+                    runs.push(on("core", few, Some(few)));
+                }
+            }
+        }
+    }
+    runs
+}

@@ -1,0 +1,145 @@
+//! `study benchmarks`: answers beside references that were not computed by this program: closed forms, equilibrium,
+//! other programs. Every case is solved on several meshes; a tolerance that is missed is reported.
+
+mod decks;
+mod hertz;
+mod meshes;
+mod patch;
+mod picture;
+mod punch;
+mod report;
+mod rings;
+mod runner;
+mod stack;
+mod three;
+mod units;
+
+use std::path::Path;
+
+pub use picture::{figure, markdown, table, text};
+pub use report::{BenchmarksReport, CaseReport, Mesh, Node, Series, Value};
+use runner::Runner;
+
+use base::Result;
+use petsc::Session;
+
+/// What a case returns: its series, and why parts of it were not run.
+type Found = (Vec<Series>, Vec<String>);
+
+/// A case of the study.
+struct Case {
+    name: &'static str,
+    title: &'static str,
+    reference: &'static str,
+    run: fn(&mut Runner) -> Result<Found>,
+}
+
+/// All cases.
+const CASES: [Case; 11] = [
+    Case {
+        name: "patch",
+        title: "Contact patch test: two blocks with different meshes under a pressure of 1 from all sides",
+        reference: "the stress is −1 everywhere, so that the pressure between the blocks is 1",
+        run: |r| Ok((patch::run(r)?, Vec::new())),
+    },
+    Case {
+        name: "rings",
+        title: "Two rings in contact under p0 + p2 cos 2θ from outside; 2n × 3n and 2n × 4n elements",
+        reference: "closed form: an Airy function in each ring (tests/data/rings.json)",
+        run: |r| Ok((rings::pressed(r)?, Vec::new())),
+    },
+    Case {
+        name: "shrink-fit",
+        title: "A ring shrunk onto another one with an interference of 5 µm; 2n × 3n and 2n × 4n elements",
+        reference: "closed form: Lamé's rings (tests/data/rings.json)",
+        run: |r| Ok((rings::shrink(r)?, Vec::new())),
+    },
+    Case {
+        name: "hertz-cylinder",
+        title: "A steel cylinder (R = 10 mm) on an aluminium block, plane strain, a/R = 0.05",
+        reference: "Hertz for half-spaces: a = √(4FR/(πE*)), p0 = 2F/(πa); F is what is applied",
+        run: |r| Ok((hertz::cylinder(r)?, Vec::new())),
+    },
+    Case {
+        name: "hertz-sphere",
+        title: "A steel ball (R = 10 mm) on an aluminium block, a/R = 0.06",
+        reference: "Hertz for half-spaces: a = (3FR/(4E*))^(1/3), p0 = 3F/(2πa²); F is what is applied",
+        run: |r| Ok((hertz::sphere(r)?, Vec::new())),
+    },
+    Case {
+        name: "roller",
+        title: "NAFEMS/FENET contact benchmark 1 without friction: a steel roller (R = 50 mm) under 35 kN/mm on an \
+                aluminium block of 200 × 200 mm, plane strain",
+        reference: "Hertz: a = √(4FR/(πE*)) = 6.21 mm, p0 = 2F/(πa) = 3585 N/mm² (NAFEMS states 6.2 mm and 3.6 GPa)",
+        run: |r| Ok((hertz::roller(r)?, Vec::new())),
+    },
+    Case {
+        name: "punch",
+        title: "A flat punch (20 mm) with round edges (R = 500 mm) on a block, both steel, plane strain",
+        reference: "Ciavarella, Hills and Monno (1998) for half-planes; F is what is applied",
+        run: |r| Ok((punch::run(r)?, Vec::new())),
+    },
+    Case {
+        name: "hueeber",
+        title: "Two cubes on top of each other, decks of CalculiX's tests after Hüeber's thesis",
+        reference: "the displacements that CalculiX printed (calculix-ccx-test), \
+                    relative to the largest; CalculiX itself",
+        run: decks::run,
+    },
+    Case {
+        name: "stack",
+        title: "A stack of blocks with different meshes under their own weight; only the lowest is held",
+        reference: "equilibrium: the force at each joint is the weight above",
+        run: |r| Ok((stack::run(r)?, Vec::new())),
+    },
+    Case {
+        name: "three",
+        title: "Three bodies each of which touches both others, under different pressures from the side and from above",
+        reference: "equilibrium: the stresses are constant, and the pressures at the joints are those outside",
+        run: |r| Ok((three::run(r)?, Vec::new())),
+    },
+    Case {
+        name: "units",
+        title: "The rings of SSNP167 in m, mm and µm",
+        reference: "the scene in metres: relative differences",
+        run: |r| Ok((units::run(r)?, Vec::new())),
+    },
+];
+
+/// Runs the study, and calls `progress` before every mesh. Scenes and meshes are written into `dir`, which may be the
+/// same on all ranks or another one on each. Collective.
+///
+/// # Errors
+/// Those of the disk and of the method.
+pub fn run(
+    session: &Session,
+    quick: bool,
+    only: Option<&str>,
+    dir: &Path,
+    progress: &mut dyn FnMut(&str),
+) -> Result<BenchmarksReport> {
+    let mut cases = Vec::new();
+    let chosen = super::chosen(CASES.into(), |c| c.name, only)?;
+    let n = chosen.len();
+    for (k, case) in chosen.into_iter().enumerate() {
+        let mut runner = Runner {
+            session,
+            dir,
+            quick,
+            case: format!("{} of {n}", k + 1),
+            progress: &mut *progress,
+        };
+        let (series, skipped) = (case.run)(&mut runner)?;
+        cases.push(CaseReport {
+            case: case.name.into(),
+            title: case.title.into(),
+            reference: case.reference.into(),
+            skipped,
+            series,
+        });
+    }
+    Ok(BenchmarksReport {
+        study: "benchmarks".into(),
+        cases,
+    })
+}

@@ -1,0 +1,63 @@
+//! Unit tests of `crates/lab/src/baselines/attempt.rs`.
+
+use super::*;
+use crate::testing::with_session;
+
+/// The end of an attempt, without its vector.
+#[derive(Debug)]
+struct End {
+    residual: f64,
+    iterations: Option<usize>,
+    converged: bool,
+}
+
+/// Simulates an iteration that gains a digit a step in its own residual. The assembled residual is `factor` times
+/// that, but at least `floor`; tolerances from `breaks_at` down make the iteration fail.
+fn drive(target: f64, factor: f64, floor: f64, breaks_at: f64) -> (End, Option<String>) {
+    with_session(move |session| {
+        let (end, _, message) = solve_to(target, target, |rtol| {
+            let steps = (-rtol.log10() - 1e-9).ceil();
+            Ok(Attempt {
+                u: PetscVec::seq(session, 1)?,
+                residual: (factor * 10_f64.powf(-steps)).max(floor),
+                converged: rtol > breaks_at,
+                outcome: Outcome {
+                    iterations: Some(steps as usize),
+                    ..Outcome::default()
+                },
+            })
+        })
+        .expect("nothing fails");
+        let end = End {
+            residual: end.residual,
+            iterations: end.outcome.iterations,
+            converged: end.converged,
+        };
+        (end, message)
+    })
+}
+
+#[test]
+fn tolerances_shrink_until_the_assembled_residual_is_met() {
+    let (end, message) = drive(1e-6, 0.9, 0.0, 0.0);
+    assert_eq!((end.iterations, message), (Some(6), None));
+    let (end, message) = drive(1e-6, 300.0, 0.0, 0.0);
+    assert!(
+        end.residual <= 1e-6 && message.is_none(),
+        "{end:?} {message:?}"
+    );
+    assert_eq!(end.iterations, Some(9));
+}
+
+#[test]
+fn what_cannot_be_met_is_said() {
+    let (end, message) = drive(1e-6, 300.0, 1e-5, 0.0);
+    assert_eq!(end.residual, 1e-5);
+    assert!(message.is_some_and(|m| m.contains("stays at 1.0e-5")));
+    // An attempt that fails later does not discard what was reached.
+    let (end, message) = drive(1e-6, 300.0, 0.0, 1e-7);
+    assert!(end.converged && end.residual < 1e-3, "{end:?}");
+    assert!(message.is_some_and(|m| m.contains("stays at")));
+    let (end, message) = drive(1e-6, 1.0, 0.0, 1e-3);
+    assert!(!end.converged && message.is_some_and(|m| m.contains("did not converge")));
+}

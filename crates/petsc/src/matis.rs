@@ -1,0 +1,195 @@
+//! Unassembled matrices (MATIS): one local matrix per rank and a map of its dofs to global ones.
+
+use super::error::{c_string, copied, got, text};
+use super::handle::Handle;
+use super::mat::count;
+use super::{Comm, Mat, Session, Vec};
+use base::linalg::csr::Csr;
+use base::{Error, Result};
+use petsc_sys as sys;
+use petsc_sys::Flag;
+
+impl Mat {
+    /// The square matrix Σ Rᵀ A_local R over the ranks. `local_to_global[i]` is the global number of local dof i, and
+    /// `owned` is the number of global dofs that this rank owns. Collective.
+    pub fn unassembled(
+        session: &Session,
+        owned: usize,
+        local_to_global: &[i32],
+        local: &Mat,
+    ) -> Result<Mat> {
+        let comm = session.raw_comm(Comm::World);
+        let n = count(local_to_global.len())?;
+        let map = Handle::made(session, |map| {
+            let numbers = local_to_global.as_ptr();
+            petsc!(ISLocalToGlobalMappingCreate(
+                comm,
+                1,
+                n,
+                numbers,
+                sys::PETSC_COPY_VALUES,
+                map
+            ))
+        })?;
+        let owned = count(owned)?;
+        let mat = Mat::made(session, |raw| {
+            petsc!(MatCreateIS(
+                comm,
+                1,
+                owned,
+                owned,
+                sys::PETSC_DETERMINE,
+                sys::PETSC_DETERMINE,
+                map.raw(),
+                map.raw(),
+                raw
+            ))
+        })?;
+        petsc!(MatISSetLocalMat(mat.raw(), local.raw()))?;
+        mat.assemble()?;
+        Ok(mat)
+    }
+
+    /// Converts the matrix to another PETSc format (`"aij"`, `"is"`, …). Collective.
+    pub fn convert(&self, format: &str) -> Result<Mat> {
+        Mat::made(self.session(), |raw| {
+            petsc!(MatConvert(
+                self.raw(),
+                c_string(format).as_ptr(),
+                sys::MAT_INITIAL_MATRIX,
+                raw
+            ))
+        })
+    }
+
+    /// The type by PETSc's name.
+    pub fn type_name(&self) -> Result<String> {
+        text(|name| petsc!(MatGetType(self.raw(), name)))
+    }
+
+    /// The block size: the number of rows of a node.
+    pub fn block_size(&self) -> Result<usize> {
+        let size = got(|size| petsc!(MatGetBlockSize(self.raw(), size)))?;
+        Ok(size.max(1) as usize)
+    }
+
+    /// For a MATIS: this rank's local matrix with its stored entries, and the global number of each local row
+    /// (negative: none).
+    ///
+    /// # Errors [`Error::Input`] if rows and columns have different maps; PETSc's own if the rows of the local matrix
+    /// cannot be read.
+    pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<i32>)> {
+        let rows = self.local_to_global()?;
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatISGetLocalMat(self.raw(), &mut raw))?;
+        let local = Mat::share(raw, self.session())?;
+        let csr = local.to_csr();
+        drop(local);
+        petsc!(MatISRestoreLocalMat(self.raw(), &mut raw))?;
+        Ok((csr?, rows))
+    }
+
+    /// For a MATIS: whether its map may list a dof several times, once for each of several subdomains on this rank
+    /// (MatISSetAllowRepeated).
+    pub fn is_repeated(&self) -> Result<bool> {
+        Ok(got(|repeated| petsc!(ff_is_repeated(self.raw(), repeated)))? != 0)
+    }
+
+    /// The rows of a sequential matrix of any type.
+    fn to_csr(&self) -> Result<Csr> {
+        let plain = if self.type_name()? == "seqaij" {
+            self.clone()
+        } else {
+            self.convert("seqaij")?
+        };
+        let (n, _) = plain.size()?;
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for i in 0..n {
+            let (col, val) = plain.row(i)?;
+            out.col.extend(col.iter().map(|&j| j as u32));
+            out.val.extend(val);
+            out.row_ptr.push(out.col.len());
+        }
+        Ok(out)
+    }
+
+    fn local_to_global(&self) -> Result<std::vec::Vec<i32>> {
+        let (mut rows, mut cols) = (std::ptr::null_mut(), std::ptr::null_mut());
+        petsc!(MatISGetLocalToGlobalMapping(
+            self.raw(),
+            &mut rows,
+            &mut cols
+        ))?;
+        let list = mapped(rows)?;
+        if cols != rows && mapped(cols)? != list {
+            return Err(Error::input(
+                "the rows and the columns of the MATIS have different local-to-global maps, expected the same",
+            ));
+        }
+        Ok(list)
+    }
+
+    /// The null space that MatSetNullSpace attached.
+    pub fn attached_null_space(&self) -> Result<Option<Attached>> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatGetNullSpace(self.raw(), &mut raw))?;
+        Attached::of(raw, self.session())
+    }
+
+    /// The near-null space that MatSetNearNullSpace attached.
+    pub fn attached_near_null_space(&self) -> Result<Option<Attached>> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatGetNearNullSpace(self.raw(), &mut raw))?;
+        Attached::of(raw, self.session())
+    }
+}
+
+/// The vectors of a null space that a host program attached to its matrix.
+pub struct Attached {
+    /// Whether the constants belong to it.
+    pub constants: bool,
+    /// The other vectors.
+    pub vectors: std::vec::Vec<Vec>,
+}
+
+impl Attached {
+    /// The vectors of a null space that a host program lends; `None` for NULL.
+    ///
+    /// # Safety
+    /// `raw` is NULL or a live null space.
+    pub unsafe fn of_host(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
+        Attached::of(raw, session)
+    }
+
+    /// The vectors of a null space; `None` for NULL.
+    fn of(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
+        if raw.is_null() {
+            return Ok(None);
+        }
+        let (mut constants, mut n, mut list) = (Flag::of(false), 0, std::ptr::null());
+        petsc!(MatNullSpaceGetVecs(raw, &mut constants, &mut n, &mut list))?;
+        let mut vectors = std::vec::Vec::new();
+        for i in 0..n as usize {
+            // SAFETY: PETSc lends `n` vectors; each is counted up here.
+            vectors.push(Vec::share(unsafe { *list.add(i) }, session)?);
+        }
+        Ok(Some(Attached {
+            constants: constants.get(),
+            vectors,
+        }))
+    }
+}
+
+/// The global number of each local index of a map that a host program lent.
+fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
+    let n = got(|n| petsc!(ISLocalToGlobalMappingGetSize(map, n)))?;
+    let mut data = std::ptr::null();
+    petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;
+    // SAFETY: PETSc lends `n` indices until they are restored.
+    let copy = unsafe { copied(data, n) };
+    petsc!(ISLocalToGlobalMappingRestoreIndices(map, &mut data))?;
+    Ok(copy)
+}

@@ -1,0 +1,133 @@
+//! The data along interfaces, which plots of plane problems and maps of solids show, and all of it as CSV.
+
+use crate::tables::table::Table;
+use base::{Error, Result};
+
+/// The nodes of one interface. All lists have one entry per node.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InterfaceNodes {
+    /// `left|right` for two bodies, `left.top above` for an obstacle.
+    pub name: String,
+    /// Parameters along the interface; in the plane the second one is zero.
+    pub t: Vec<[f64; 2]>,
+    /// Position.
+    pub points: Vec<[f64; 3]>,
+    /// Remaining distance between the sides.
+    pub gap: Vec<f64>,
+    /// Force at the node; positive where the sides press against each other.
+    pub multiplier: Vec<f64>,
+    /// Whether the sides touch.
+    pub active: Vec<bool>,
+    /// The part of the side that belongs to the node: in the plane a length. Empty if forces are not reported as
+    /// pressures.
+    pub area: Vec<f64>,
+    /// Pressures without oscillations; empty where they are none but those of the forces.
+    pub smoothed: Vec<f64>,
+}
+
+impl InterfaceNodes {
+    /// Checks that the lists, and those in `more`, have one entry per node.
+    pub(super) fn check(&self, more: &[(usize, &str)]) -> Result<()> {
+        let n = self.t.len();
+        let areas = if self.has_pressure() {
+            self.area.len()
+        } else {
+            n
+        };
+        let lists = [
+            (self.points.len(), "points"),
+            (self.gap.len(), "gaps"),
+            (self.multiplier.len(), "multipliers"),
+            (self.active.len(), "states"),
+            (areas, "areas"),
+            (self.smoothed.len().max(n), "smoothed pressures"),
+        ];
+        match lists.iter().chain(more).find(|list| list.0 != n) {
+            None => Ok(()),
+            Some((found, list)) => Err(Error::input(format!(
+                "the interface '{}' lists {found} {list}, expected one for each of {n} nodes",
+                self.name
+            ))),
+        }
+    }
+
+    /// Whether pressures are shown: whether there are areas.
+    pub(super) fn has_pressure(&self) -> bool {
+        !self.area.is_empty()
+    }
+
+    /// Force per area, node by node; NaN where a node has no area.
+    pub fn pressure(&self) -> Vec<f64> {
+        let each = self.multiplier.iter().zip(&self.area);
+        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
+            .collect()
+    }
+
+    /// The pressures that pictures show: the smoothed ones where there are some.
+    pub(super) fn shown_pressure(&self) -> Vec<f64> {
+        match self.smoothed.is_empty() {
+            true => self.pressure(),
+            false => self.smoothed.clone(),
+        }
+    }
+
+    /// Sum of the multipliers.
+    pub fn force(&self) -> f64 {
+        self.multiplier.iter().sum()
+    }
+}
+
+/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area;
+/// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures. Where an
+/// interface has smoothed pressures, all of them have a column pressure_smoothed.
+pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
+    let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
+    let smoothed = interfaces.iter().any(|(i, _)| !i.smoothed.is_empty());
+    let nodes = interfaces.iter();
+    let nodes = nodes.flat_map(|(i, pressure)| (0..i.t.len()).map(move |k| (*i, pressure, k)));
+    Table::of(nodes)
+        .exact("name", |(i, _, _)| i.name.as_str())
+        .exact("t", |(i, _, k)| i.t[*k][0])
+        .when(solid, |t| t.exact("s", |(i, _, k)| i.t[*k][1]))
+        .exact("x", |(i, _, k)| i.points[*k][0])
+        .exact("y", |(i, _, k)| i.points[*k][1])
+        .when(solid, |t| t.exact("z", |(i, _, k)| i.points[*k][2]))
+        .exact("gap", |(i, _, k)| i.gap[*k])
+        .exact("multiplier", |(i, _, k)| i.multiplier[*k])
+        .exact("active", |(i, _, k)| u8::from(i.active[*k]))
+        .exact("pressure", |(_, pressure, k)| pressure.get(*k).copied())
+        .exact("area", |(i, _, k)| i.area.get(*k).copied())
+        .when(smoothed, |t| {
+            t.exact("pressure_smoothed", |(i, pressure, k)| {
+                i.smoothed.get(*k).or(pressure.get(*k)).copied()
+            })
+        })
+        .table()
+}
+
+/// The interfaces with the largest forces, at most `shown`, and the title, which gives the total number where there are
+/// more. Forces that are not finite come first: the reader must see them.
+pub(super) fn largest<'a, T>(
+    interfaces: impl Iterator<Item = &'a T>,
+    nodes: fn(&T) -> &InterfaceNodes,
+    shown: usize,
+    title: &str,
+) -> (Vec<&'a T>, String) {
+    let size = |t: &T| match nodes(t).force().abs() {
+        force if force.is_nan() => f64::INFINITY,
+        force => force,
+    };
+    let mut order: Vec<&T> = interfaces.collect();
+    order.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let note = format!(
+        "the {shown} of {} interfaces with the largest forces",
+        order.len()
+    );
+    let title = match (title, order.len() > shown) {
+        (_, false) => title.to_string(),
+        ("", true) => note,
+        _ => format!("{title}: {note}"),
+    };
+    order.truncate(shown);
+    (order, title)
+}

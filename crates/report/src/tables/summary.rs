@@ -1,0 +1,265 @@
+//! The tables that the commands print, and their CSV forms.
+
+use super::contact as contact_summary;
+use super::table::{count, fixed, scientific, Table};
+use crate::json::{PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
+use fetifeti::feti::Communication;
+use fetifeti::Status;
+
+/// The result of `solve` as lines "name  value".
+pub fn solve(r: &SolveReport) -> String {
+    let spectrum = |s: Option<Spectrum>| {
+        s.map_or_else(
+            || "–".to_string(),
+            |s| {
+                let known = s.settled.map_or_else(String::new, |r| {
+                    format!(", settled with a residual of {}", scientific(Some(r)))
+                });
+                format!(
+                    "κ = {:.4}   (λ_min {:.6}, λ_max {:.4}{known})",
+                    s.kappa, s.lambda_min, s.lambda_max
+                )
+            },
+        )
+    };
+    let floating = match r.floating_bodies {
+        0 => "none floating".to_string(),
+        n => format!("{n} floating"),
+    };
+    let mut lines = vec![
+        ("scene", r.scene.clone()),
+        (
+            "bodies",
+            format!(
+                "{} ({floating}), {} subdomains on {}",
+                r.bodies,
+                r.subdomains,
+                ranks(r.ranks)
+            ),
+        ),
+        ("degrees of freedom", r.dofs.to_string()),
+        (
+            "multipliers",
+            format!(
+                "{} in bodies, {} between bodies ({} active)",
+                r.multipliers.local, r.multipliers.global, r.multipliers.active
+            ),
+        ),
+        (
+            "method",
+            format!(
+                "{}, preconditioner {}, projector {}",
+                r.ksp_type, r.preconditioner, r.projector
+            ),
+        ),
+    ];
+    if let Some(coarse) = &r.natural_coarse {
+        let how = match (coarse.iterations, coarse.rtol) {
+            (Some(n), Some(rtol)) => {
+                format!(
+                    "{}, {n:.1} iterations of FGMRES around it to {rtol:.0e}",
+                    coarse.solver
+                )
+            }
+            _ => format!("{}, exact after rounding", coarse.solver),
+        };
+        lines.push(("coarse problem of bodies", how));
+    }
+    // The default, a scalar problem in the plane, is not mentioned.
+    if r.dimension == 3 || r.components > 1 {
+        lines.insert(1, ("physics", r.form.clone()));
+    }
+    let inner = if r.outer_iterations > 1 {
+        let each: Vec<String> = r.iterations.inner.iter().map(usize::to_string).collect();
+        // For many outer steps, their table has the iterations.
+        let each = if each.len() > 12 {
+            String::new()
+        } else {
+            format!(" ({})", each.join(", "))
+        };
+        format!(
+            "{} in {} contact steps{each}",
+            r.iterations.total, r.outer_iterations
+        )
+    } else {
+        r.iterations.total.to_string()
+    };
+    lines.push((
+        "iterations",
+        format!("{inner}, {} at rtol {:.0e}", r.converged_reason, r.rtol),
+    ));
+    if r.converged_reason == Status::Rounding.name() {
+        lines.push(("rounding", rounding(r)));
+    }
+    if let Some(adaptive) = &r.adaptive {
+        if adaptive.constraints.iter().any(|n| *n > 0) {
+            lines.push(("adaptive primal", adaptive.constraints_text()));
+        }
+        if let Some(deflation) = &adaptive.deflation {
+            lines.push(("deflation", deflation.text()));
+        }
+        if let Some(declined) = &adaptive.declined {
+            lines.push(("deflation", declined.text()));
+        }
+    }
+    if r.condition.exact.is_some() {
+        lines.push(("exact spectrum", spectrum(r.condition.exact)));
+    }
+    if r.condition.estimate.is_some() {
+        lines.push(("estimate of the run", spectrum(r.condition.estimate)));
+    }
+    lines.push((
+        if r.kkt.min_multiplier.is_some() {
+            "KKT conditions"
+        } else {
+            "residuals"
+        },
+        contact_summary::certificate(&r.kkt),
+    ));
+    lines.push(("energy", format!("{:.12e}", r.energy)));
+    if let Some(certified) = &r.certified {
+        lines.push(("certified error", certified.text()));
+        if let Some(discretisation) = &certified.discretisation {
+            lines.push(("discretisation error", discretisation.text()));
+        }
+    }
+    if let Some(e) = r.error {
+        lines.push((
+            "error",
+            format!(
+                "L² {:.3e}, H¹ {:.3e}, energy {:.3e}",
+                e.l2, e.h1, e.energy_norm
+            ),
+        ));
+    }
+    if let Some(c) = r.communication.filter(|_| r.ranks > 1) {
+        lines.push(("an iteration sends", communication(&c)));
+    }
+    let s = &r.seconds;
+    lines.push((
+        "seconds",
+        format!(
+            "{:.3} (assemble {:.3}, set-up {:.3}, solve {:.3}, recover {:.3})",
+            s.total, s.assemble, s.setup, s.solve, s.recover
+        ),
+    ));
+    if let Some(o) = r.operators.filter(|o| o.sparse > 0) {
+        let text = format!(
+            "{} of {} kinds of subdomains as sparse solves ({:.0} MB), the others as dense matrices ({:.0} MB)",
+            o.sparse, o.kinds, o.factor_mb, o.dense_mb
+        );
+        lines.push(("operators", text));
+    }
+    lines.push(("memory", format!("{:.0} MB", r.memory_mb)));
+    let width = lines
+        .iter()
+        .map(|(name, _)| name.chars().count())
+        .max()
+        .unwrap_or(0);
+    let mut text: String = lines
+        .iter()
+        .map(|(name, value)| format!("{name:<width$}  {value}\n"))
+        .collect();
+    if let Some(contact) = &r.contact {
+        text += &contact_summary::contact(contact);
+    }
+    if let Some(identities) = &r.check {
+        text += "identities (relative defects, to be about rounding)\n";
+        for (name, defect) in identities {
+            text += &format!("  {name:<width$}{defect:.1e}\n");
+        }
+    }
+    text
+}
+
+/// A number of ranks in words: "1 rank", "2 ranks".
+pub fn ranks(n: usize) -> String {
+    if n == 1 {
+        "1 rank".to_string()
+    } else {
+        format!("{n} ranks")
+    }
+}
+
+/// One line on a tolerance below rounding.
+fn rounding(r: &SolveReport) -> String {
+    format!(
+        "the tolerance {} is below it; stationarity and feasibility reached {}",
+        scientific(Some(r.rtol)),
+        scientific(Some(r.kkt.stationarity.max(r.kkt.feasibility)))
+    )
+}
+
+/// One line on the messages of an iteration.
+fn communication(c: &Communication) -> String {
+    let (messages, bytes) = (c.messages, c.bytes);
+    format!(
+        "{:.0} messages, {:.1} kB (most of a rank {:.0}, {:.1} kB), {:.1} all-reduces of {:.0} B",
+        messages.sum,
+        1e-3 * bytes.sum,
+        messages.max,
+        1e-3 * bytes.max,
+        c.reductions,
+        c.reduced_bytes / c.reductions.max(1.0)
+    )
+}
+
+/// Table 1 for terminals: the paper's numbers, then ours with M_D and M_C, columns (I) and (II) side by side.
+pub fn table1(rows: &[Table1Row]) -> Table {
+    let mut table = Table::of(rows)
+        .numbers("1/H_b", |r| r.bodies)
+        .numbers("H_b/H_s", |r| r.subdomains)
+        .numbers("H_s/h", |r| r.elements);
+    for (k, column) in ["I", "II"].into_iter().enumerate() {
+        table = table
+            .numbers(format!("({column}) paper κ"), |r| {
+                fixed(sides(r)[k].paper.map(|p| p.cond), 4)
+            })
+            .numbers("it", |r| count(sides(r)[k].paper.map(|p| p.iter)))
+            .numbers("κ(M_D)", |r| fixed(sides(r)[k].dirichlet.exact, 4))
+            .numbers("CG est.", |r| fixed(sides(r)[k].dirichlet.estimate, 4))
+            .numbers("it", |r| sides(r)[k].dirichlet.iterations)
+            .numbers("κ(M_C)", |r| fixed(sides(r)[k].coarse_corrected.exact, 4))
+            .numbers("it", |r| sides(r)[k].coarse_corrected.iterations);
+    }
+    table.table()
+}
+
+/// The columns (I) and (II) of a row.
+fn sides(row: &Table1Row) -> [&Table1Side; 2] {
+    [&row.whole_interface, &row.middle_third]
+}
+
+/// The results with M_D and with M_C in column `k` of a row.
+fn results(row: &Table1Row, k: usize) -> [&PcResult; 2] {
+    let side = sides(row)[k];
+    [&side.dirichlet, &side.coarse_corrected]
+}
+
+/// Table 1 for programs: one line per size, full precision, empty cells for unknown values.
+pub fn table1_csv(rows: &[Table1Row]) -> Table {
+    let mut table = Table::of(rows)
+        .exact("bodies", |r| r.bodies)
+        .exact("subdomains", |r| r.subdomains)
+        .exact("elements", |r| r.elements);
+    for (k, column) in ["whole_interface", "middle_third"].into_iter().enumerate() {
+        let name = |quantity: &str| format!("{column}_{quantity}");
+        table = table
+            .exact(name("multipliers"), |r| sides(r)[k].multipliers)
+            .exact(name("floating_bodies"), |r| sides(r)[k].floating_bodies)
+            .exact(name("paper_cond"), |r| sides(r)[k].paper.map(|p| p.cond))
+            .exact(name("paper_iter"), |r| sides(r)[k].paper.map(|p| p.iter));
+        for (pc, mark) in ["", "coarse_corrected_"].into_iter().enumerate() {
+            let name = |quantity: &str| name(&format!("{mark}{quantity}"));
+            table = table
+                .exact(name("exact"), |r| results(r, k)[pc].exact)
+                .exact(name("estimate"), |r| results(r, k)[pc].estimate)
+                .exact(name("iterations"), |r| results(r, k)[pc].iterations);
+        }
+    }
+    table.table()
+}
+
+#[cfg(test)]
+#[path = "../../tests/tables/summary.rs"]
+pub(crate) mod tests;

@@ -1,0 +1,193 @@
+//! Unit tests of `crates/report/src/pictures/field.rs`.
+
+use super::*;
+use crate::drawing::colormap::viridis;
+use crate::pictures::obstacles::Obstacle;
+use crate::pictures::outline::tests::grid;
+
+#[test]
+fn colours_stand_for_values() {
+    // u = x on the unit square: the left end is dark violet, the right end yellow, the middle teal.
+    let mesh = grid(2, 2, 4, false);
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+    let picture = draw(
+        &Beside::default(),
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        false,
+        "",
+    );
+    let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
+    let at = |x: f64, y: f64| {
+        let p = ((origin.0 + 400.0 * x) * 2.0, (origin.1 - 400.0 * y) * 2.0);
+        picture.get(p.0 as usize, p.1 as usize)
+    };
+    let near = |a: Colour, b: Colour| {
+        [(a.0, b.0), (a.1, b.1), (a.2, b.2)]
+            .iter()
+            .all(|(x, y)| x.abs_diff(*y) <= 3)
+    };
+    for (x, y) in [(0.06, 0.3), (0.31, 0.8), (0.45, 0.45), (0.9, 0.1)] {
+        assert!(
+            near(at(x, y), viridis(x)),
+            "{:?} at {x}, {y}, expected {:?}",
+            at(x, y),
+            viridis(x)
+        );
+    }
+    // The line between the bodies.
+    assert_eq!(at(0.5, 0.3), Colour(0, 0, 0));
+}
+
+#[test]
+fn the_contact_zone_is_marked_on_u() {
+    // Two bodies that touch along x = 1/2 in its lower half; the upper half is open.
+    let mesh = grid(2, 2, 4, false);
+    let u = vec![0.5; mesh.points.len()];
+    let field = [Field::nodal("u", &u); 2];
+    let marks: Vec<ContactMark> = (0..16)
+        .map(|k| ContactMark {
+            from: [0.5, f64::from(k) / 16.0],
+            to: [0.5, f64::from(k + 1) / 16.0],
+            closed: k < 8,
+        })
+        .collect();
+    let plain = draw(&Beside::default(), &mesh.view(), &field, &[], false, "");
+    let marked = draw(&Beside::default(), &mesh.view(), &field, &marks, false, "");
+    let (w, h) = plain.size();
+    assert_eq!(marked.size().0, w);
+    assert!(marked.size().1 > h, "room for the legend");
+    let red = |x: usize, y: usize| {
+        let c = marked.get(x, y);
+        c.0 > 200 && c.1 < 60
+    };
+    let rows = |xs: std::ops::Range<usize>| (0..h).filter(move |&y| xs.clone().any(|x| red(x, y)));
+    // The lower half of the first picture, 400 logical pixels high, and nothing on the second.
+    let count = rows(0..w / 2).count();
+    assert!(count.abs_diff(400) < 12, "{count}");
+    assert_eq!(rows(w / 2..w).count(), 0);
+    // Dashes, in the upper half: black and white in turn.
+    let x = ((LEFT + 200.0) * 2.0) as usize;
+    let y0 = ((6.0 + 2.4 * TEXT) * 2.0) as usize;
+    let dark: Vec<bool> = (y0 + 8..y0 + 380)
+        .map(|y| marked.get(x, y).0 < 100)
+        .collect();
+    let changes = dark.windows(2).filter(|p| p[0] != p[1]).count();
+    assert!((30..80).contains(&changes), "{changes}");
+}
+
+/// u and ρ.
+fn both<'a>(u: &'a [f64], rho: &'a [f64]) -> [Field<'a>; 2] {
+    let rho = Field::coefficient("coefficient ρ", rho);
+    [Field::nodal("solution u", u), rho]
+}
+
+#[test]
+fn arrays_of_the_wrong_length_are_refused() {
+    let mesh = grid(1, 1, 2, false);
+    let (u, rho) = (
+        vec![0.0; mesh.points.len()],
+        vec![1.0; mesh.quads.len() + 1],
+    );
+    let message = write(
+        &Beside::default(),
+        &mesh.view(),
+        &both(&u, &rho),
+        &[],
+        false,
+        "",
+        Path::new("/dev/null"),
+    )
+    .unwrap_err()
+    .to_string();
+    assert!(
+        message.contains("'coefficient ρ' has 5 numbers"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_million_cells_are_painted() {
+    let mesh = grid(2, 2, 256, false); // 2×2 bodies of 2×2 subdomains of 256²: 1024² cells
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
+    let rho = vec![1.0; mesh.quads.len()];
+    let dir = crate::output::tests::Scratch::new("field");
+    write(
+        &Beside::default(),
+        &mesh.view(),
+        &both(&u, &rho),
+        &[],
+        false,
+        "",
+        &dir.0.join("u.png"),
+    )
+    .unwrap();
+}
+
+/// A rigid plane under a body: grey in the margin below, white in the others.
+#[test]
+fn obstacles_stand_beside_bodies() {
+    let mesh = grid(1, 1, 2, false);
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+    let ground = Obstacle {
+        rigid: scene::Rigid::Plane {
+            point: [0.0; 3],
+            normal: [0.0, 1.0, 0.0],
+        },
+        gap: 0.0,
+    };
+    let picture = draw(
+        &Beside {
+            obstacles: &[ground],
+            faces: &[],
+        },
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        true,
+        "",
+    );
+    let size = 1.0 + 2.0 * BEYOND;
+    let (unit, bottom) = (400.0 / size, 6.0 + 2.4 * TEXT + 400.0);
+    let at = |x: f64, y: f64| {
+        let p = (LEFT + unit * (x + BEYOND), bottom - unit * (y + BEYOND));
+        picture.get((2.0 * p.0) as usize, (2.0 * p.1) as usize)
+    };
+    assert_eq!(at(0.5, -0.04), crate::pictures::obstacles::GREY);
+    assert_eq!(at(0.5, 1.04), Colour::WHITE);
+    assert_eq!(at(-0.04, 0.5), Colour::WHITE);
+    assert_ne!(at(0.3, 0.3), Colour::WHITE);
+}
+
+/// A rigid surface at the same place: a band below it, and none where the surface ends.
+#[test]
+fn rigid_surfaces_stand_beside_bodies() {
+    let mesh = grid(1, 1, 2, false);
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+    // From right to left: the normals point up.
+    let faces = [vec![[0.8, 0.0, 0.0], [-3.0, 0.0, 0.0]]];
+    let beside = Beside {
+        obstacles: &[],
+        faces: &faces,
+    };
+    let picture = draw(
+        &beside,
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        true,
+        "",
+    );
+    let size = 1.0 + 2.0 * BEYOND;
+    let (unit, bottom) = (400.0 / size, 6.0 + 2.4 * TEXT + 400.0);
+    let at = |x: f64, y: f64| {
+        let p = (LEFT + unit * (x + BEYOND), bottom - unit * (y + BEYOND));
+        picture.get((2.0 * p.0) as usize, (2.0 * p.1) as usize)
+    };
+    let grey = crate::pictures::obstacles::GREY;
+    assert_eq!([at(0.5, -0.01), at(-0.04, -0.01)], [grey; 2]);
+    for white in [at(0.5, -0.04), at(0.9, -0.01), at(0.5, 1.04)] {
+        assert_eq!(white, Colour::WHITE);
+    }
+}

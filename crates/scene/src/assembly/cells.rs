@@ -1,0 +1,90 @@
+//! Element matrices of one subdomain; equal elements share one matrix.
+
+use super::{Grid, SubdomainMesh};
+use elements::cell::{self, Element};
+use elements::q1;
+use std::collections::HashMap;
+
+/// The element matrices of a subdomain.
+pub struct Cells<'m> {
+    mesh: &'m SubdomainMesh,
+    kind: Kind,
+}
+
+enum Kind {
+    /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and the index of each element's matrix
+    /// (empty: the first).
+    Boxes { unit: Vec<Vec<f64>>, of: Vec<u32> },
+    /// Curved bodies: one matrix for each element, one after the other.
+    Each { n: usize, all: Vec<f64> },
+}
+
+impl<'m> Cells<'m> {
+    /// Computes the matrices.
+    pub fn new(mesh: &'m SubdomainMesh, grid: &Grid) -> Cells<'m> {
+        let n = grid.corners() * mesh.components();
+        let kind = match grid.step {
+            Some(step) => boxes(mesh, step, n),
+            None => each(mesh, grid, n),
+        };
+        Cells { mesh, kind }
+    }
+
+    /// The matrix of element `e` by rows, and the factor that multiplies it.
+    #[inline]
+    pub fn at(&self, e: usize) -> (&[f64], f64) {
+        match &self.kind {
+            Kind::Boxes { unit, of } => {
+                let which = of.get(e).map_or(0, |&k| k as usize);
+                (&unit[which], self.mesh.rho[e])
+            }
+            Kind::Each { n, all } => (&all[e * n * n..(e + 1) * n * n], 1.0),
+        }
+    }
+}
+
+fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
+    let corner = |a: usize| [0, 1, 2].map(|d| step[d] * (a >> d & 1) as f64);
+    let points: Vec<[f64; 3]> = (0..1 << mesh.dim).map(corner).collect();
+    let matrix = |poisson: f64| {
+        if mesh.dim == 2 && n == 4 && mesh.form.element == Element::Q1 {
+            return q1::stiffness(step[0], step[1]).concat();
+        }
+        let mut out = vec![0.0; n * n];
+        let material = mesh.form.material(1.0, poisson);
+        cell::stiffness(mesh.dim, &points, mesh.form.element, &material, &mut out);
+        out
+    };
+    let first = mesh.poisson.first().copied().unwrap_or(0.0);
+    if mesh.poisson.iter().all(|&p| p == first) {
+        return Kind::Boxes {
+            unit: vec![matrix(first)],
+            of: Vec::new(),
+        };
+    }
+    let mut known: HashMap<u64, u32> = HashMap::new();
+    let mut unit = Vec::new();
+    let of = mesh.poisson.iter().map(|&p| {
+        *known.entry(p.to_bits()).or_insert_with(|| {
+            unit.push(matrix(p));
+            unit.len() as u32 - 1
+        })
+    });
+    let of = of.collect();
+    Kind::Boxes { unit, of }
+}
+
+fn each(mesh: &SubdomainMesh, grid: &Grid, n: usize) -> Kind {
+    let mut all = vec![0.0; n * n * mesh.n_elements()];
+    for (e, (out, place)) in all
+        .chunks_exact_mut(n * n)
+        .zip(grid.element_places())
+        .enumerate()
+    {
+        let points = mesh.element_points(grid, place);
+        let material = mesh.material(e);
+        let element = mesh.form.element;
+        cell::stiffness(mesh.dim, &points[..grid.corners()], element, &material, out);
+    }
+    Kind::Each { n, all }
+}

@@ -1,0 +1,180 @@
+//! What joins the bodies of a deck: *TIE, *CONTACT PAIR, *EQUATION.
+
+use super::bodies::along_coordinates;
+use super::numbers::Numbers;
+use crate::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
+use crate::model::profile::Profile;
+use base::Result;
+use deck::{Adjust, ContactPair, Deck, Overclosure, SurfaceName, Tie};
+use fetifeti::substructures::BodyNode;
+use mesh::Members;
+use std::collections::{BTreeSet, HashSet};
+
+/// The nodes of a slave within a distance of the master, one by one, as CalculiX joins them.
+fn singly(distance: f64) -> Extent {
+    Extent::Within {
+        distance,
+        singly: true,
+    }
+}
+
+/// Gives the surfaces of ties and contact pairs names that no other boundary group has: a *NSET may have that of a
+/// *SURFACE.
+pub(super) fn distinguish(deck: &mut Deck) {
+    let ties = deck.ties.iter().map(|t| [&t.slave, &t.master]);
+    let contacts = deck.contacts.iter().map(|c| [&c.slave, &c.master]);
+    let joined = ties.chain(contacts).flatten().map(|s| s.group as usize);
+    let joined: BTreeSet<usize> = joined.collect();
+    let mut names = HashSet::new();
+    let others = (0..deck.mesh.groups.len()).filter(|g| !joined.contains(g));
+    for g in joined.iter().copied().chain(others) {
+        let group = &mut deck.mesh.groups[g];
+        if matches!(group.members, Members::Cells { .. }) {
+            continue;
+        }
+        let own = group.name.clone();
+        let mut number = 2;
+        while names.contains(&group.name) {
+            group.name = format!("{own} ({number})");
+            number += 1;
+        }
+        if joined.contains(&g) {
+            names.insert(group.name.clone());
+        }
+    }
+}
+
+/// The two surfaces of a tie or a contact pair.
+fn surfaces(deck: &Deck, slave: &SurfaceName, master: &SurfaceName) -> Pair {
+    let [a, b] = [slave, master].map(|s| deck.mesh.groups[s.group as usize].name.clone());
+    Pair::Surfaces(a, b)
+}
+
+/// The ties, among them the contact pairs that tie.
+pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
+    let tie = |pair: Pair, tolerance: Option<f64>, written: String| TieSpec {
+        pair,
+        sides: None,
+        extent: tolerance.map_or(Extent::All, singly),
+        multipliers: None,
+        adjust: tolerance.unwrap_or(0.0),
+        written,
+    };
+    let ties = deck.ties.iter();
+    let of_tie = |t: &Tie| {
+        let pair = surfaces(deck, &t.slave, &t.master);
+        tie(pair, t.tolerance, at(deck, t.place))
+    };
+    let mut out: Vec<TieSpec> = ties.map(of_tie).collect();
+    for pair in &deck.contacts {
+        let interaction = &deck.interactions[pair.interaction as usize];
+        if matches!(interaction.overclosure, Overclosure::Tied { .. }) {
+            let both = surfaces(deck, &pair.slave, &pair.master);
+            out.push(tie(both, None, at(deck, pair.place)));
+        }
+    }
+    out
+}
+
+/// The contact pairs that do not tie; soft laws are hard here. The masters of those that are `exchanged` carry the
+/// multipliers.
+pub(super) fn contacts(
+    deck: &Deck,
+    numbers: &Numbers,
+    exchanged: &[Option<f64>],
+) -> Result<Vec<ContactSpec>> {
+    let mut out = Vec::new();
+    for (pair, exchanged) in deck.contacts.iter().zip(exchanged) {
+        let interaction = &deck.interactions[pair.interaction as usize];
+        if matches!(interaction.overclosure, Overclosure::Tied { .. }) {
+            continue;
+        }
+        let (adjust, adjusted) = match &pair.adjust {
+            Adjust::No => (0.0, Vec::new()),
+            Adjust::Within(distance) => (*distance, Vec::new()),
+            Adjust::Nodes(nodes) => (0.0, adjusted(deck, numbers, pair, nodes)?),
+        };
+        out.push(ContactSpec {
+            pair: surfaces(deck, &pair.slave, &pair.master),
+            sides: None,
+            // Nodes of a slave of nodes may form no faces.
+            extent: match pair.slave.nodes {
+                true => singly(f64::INFINITY),
+                false => Extent::All,
+            },
+            gap: Profile::constant(pair.clearance.unwrap_or(0.0)),
+            distance: None,
+            multipliers: exchanged.map(|_| 1),
+            // A clearance replaces the geometric gap, whatever that is.
+            adjust: if pair.clearance.is_some() {
+                f64::INFINITY
+            } else {
+                adjust
+            },
+            adjusted,
+            ramp: None,
+            written: at(deck, pair.place),
+        });
+    }
+    Ok(out)
+}
+
+/// The nodes of the slave that a contact pair moves onto its master: those of a set.
+fn adjusted(
+    deck: &Deck,
+    numbers: &Numbers,
+    pair: &ContactPair,
+    set: &[u32],
+) -> Result<Vec<BodyNode>> {
+    let mesh = &deck.mesh;
+    let slave: BTreeSet<u32> = match &mesh.groups[pair.slave.group as usize].members {
+        Members::Nodes(nodes) => nodes.iter().copied().collect(),
+        Members::Sides(sides) => {
+            let nodes = |&(c, side): &(u32, u8)| mesh.cells.side_nodes(c as usize, side.into());
+            sides.iter().flat_map(nodes).collect()
+        }
+        Members::Cells { .. } => BTreeSet::new(),
+    };
+    let both: Vec<u32> = set.iter().copied().filter(|k| slave.contains(k)).collect();
+    if both.is_empty() {
+        let name = &pair.slave.name;
+        return Err(deck.files.error(
+            pair.place,
+            format!("the node set of ADJUST has no node of the slave surface {name} (one at least was expected)"),
+        ));
+    }
+    Ok(both.into_iter().filter_map(|k| numbers.node(k)).collect())
+}
+
+/// The equations between displacements.
+pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSpec>> {
+    let mut out = Vec::new();
+    for equation in &deck.equations {
+        let mut terms = Vec::new();
+        for term in &equation.terms {
+            let at = (term.node, term.dof);
+            let Some(parts) = along_coordinates(deck, numbers, at, term.factor) else {
+                return Err(deck.files.error(
+                    equation.place,
+                    format!(
+                        "an equation with node {}, which no element has",
+                        deck.mesh.node_ids[term.node as usize]
+                    ),
+                ));
+            };
+            terms.extend(parts);
+        }
+        out.push(EquationSpec {
+            terms,
+            value: 0.0,
+            resolution: deck.factor_resolution,
+            support: false,
+            written: at(deck, equation.place),
+        });
+    }
+    Ok(out)
+}
+
+fn at(deck: &Deck, place: deck::Place) -> String {
+    format!("{}: ", deck.files.at(place))
+}

@@ -1,0 +1,222 @@
+//! Displacements of the sides that may touch, of all bodies or of those that a rank needs.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+
+use super::checked::Scene;
+use fetifeti::substructures::{BodyNode, RowSource, Subdomain};
+use parallel::exchange::{exchange_words, gather_all};
+use petsc::Session;
+
+/// The displacements of all nodes of the sides that may touch: what [`Scene::renew`] needs.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Displaced {
+    /// By body.
+    nodes: FxHashMap<usize, Arc<FxHashMap<usize, [f64; 3]>>>,
+}
+
+/// Words per node: body, node, three components.
+const WORDS: usize = 5;
+
+/// Adds the words of those of `nodes` that a subdomain has and is the owner of.
+fn nodes_of(
+    scene: &Scene,
+    sub: &Subdomain,
+    u: &[f64],
+    scale: f64,
+    nodes: &BTreeSet<usize>,
+    words: &mut Vec<u64>,
+) {
+    let (body, inside) = scene.place(sub.index);
+    let c = body.components;
+    let mut free = u.iter();
+    for node in body.mesh().subdomain_nodes(inside) {
+        let mut at = [0.0; 3];
+        for (component, value) in at[..c].iter_mut().enumerate() {
+            *value = match body.prescribed_at(node * c + component) {
+                Some(given) => given * scale,
+                None => *free.next().expect("a value for every free dof"),
+            };
+        }
+        if nodes.contains(&node) && body.mesh().owner(node) == inside {
+            words.extend([sub.body as u64, node as u64]);
+            words.extend(at.map(f64::to_bits));
+        }
+    }
+}
+
+impl Displaced {
+    /// All of them, on every rank, from the displacements `u` of each rank's subdomains at load step `step`.
+    /// Collective.
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub fn gather(
+        session: &Session,
+        scene: &Scene,
+        local: &[Subdomain],
+        u: &[Vec<f64>],
+        step: usize,
+    ) -> Displaced {
+        let scale = scene.prescribed_factor(step);
+        let wanted = scene.nodes_that_may_touch(|_| true);
+        let mut words = Vec::new();
+        for (sub, u) in local.iter().zip(u) {
+            if let Some(nodes) = wanted.get(&sub.body) {
+                nodes_of(scene, sub, u, scale, nodes, &mut words);
+            }
+        }
+        Displaced::read(&gather_all(session.comm(), &words))
+    }
+
+    /// Those of some bodies, which need not be the same on all ranks. Collective.
+    ///
+    /// # Panics
+    /// As [`gather`](Self::gather).
+    pub fn near(
+        session: &Session,
+        scene: &Scene,
+        local: &[Subdomain],
+        u: &[Vec<f64>],
+        step: usize,
+        bodies: &BTreeSet<usize>,
+    ) -> Displaced {
+        let comm = session.comm();
+        let scale = scene.prescribed_factor(step);
+        let mut parts: FxHashMap<usize, usize> = FxHashMap::default();
+        local
+            .iter()
+            .for_each(|sub| *parts.entry(sub.body).or_default() += 1);
+        let is_whole = |b: usize| parts.get(&b) == Some(&scene.bodies[b].mesh().n_subdomains());
+        let ask = bodies.iter().filter(|&&b| !is_whole(b));
+        let ask: Vec<u64> = ask.map(|&b| b as u64).collect();
+        // Who wants a body, by body: this rank, and others.
+        let mut askers: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
+        for &body in bodies {
+            askers.entry(body).or_default().push(session.rank());
+        }
+        for (rank, list) in gather_all(comm, &ask).into_iter().enumerate() {
+            for body in list.into_iter().filter(|_| rank != session.rank()) {
+                askers.entry(body as usize).or_default().push(rank);
+            }
+        }
+        let wanted = scene.nodes_that_may_touch(|b| askers.contains_key(&b));
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (sub, u) in local.iter().zip(u) {
+            let (Some(nodes), Some(ranks)) = (wanted.get(&sub.body), askers.get(&sub.body)) else {
+                continue;
+            };
+            let mut words = Vec::new();
+            nodes_of(scene, sub, u, scale, nodes, &mut words);
+            ranks.iter().for_each(|&r| outgoing[r].extend(&words));
+        }
+        Displaced::read(&exchange_words(comm, outgoing))
+    }
+
+    fn read(received: &[Vec<u64>]) -> Displaced {
+        let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
+        let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
+        for w in each {
+            let [body, node] = [w[0], w[1]].map(|k| k as usize);
+            let u = [2, 3, 4].map(|k| f64::from_bits(w[k]));
+            nodes.entry(body).or_default().insert(node, u);
+        }
+        Displaced::new(nodes)
+    }
+
+    fn new(nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>>) -> Displaced {
+        let shared = nodes.into_iter().map(|(body, u)| (body, Arc::new(u)));
+        Displaced {
+            nodes: shared.collect(),
+        }
+    }
+
+    /// From the displacements by body and node.
+    pub fn of_nodes(list: &[(usize, usize, [f64; 3])]) -> Displaced {
+        let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
+        for &(body, node, u) in list {
+            nodes.entry(body).or_default().insert(node, u);
+        }
+        Displaced::new(nodes)
+    }
+
+    /// The displacements by body and node, in their order.
+    pub fn nodes(&self) -> Vec<(usize, usize, [f64; 3])> {
+        let bodies = self.nodes.iter();
+        let each = bodies.flat_map(|(&body, u)| u.iter().map(move |(&node, &u)| (body, node, u)));
+        let mut list: Vec<(usize, usize, [f64; 3])> = each.collect();
+        list.sort_unstable_by_key(|e| (e.0, e.1));
+        list
+    }
+
+    /// The displacement of a node; zero where it is not known.
+    pub fn at(&self, at: BodyNode) -> [f64; 3] {
+        let of_body = self.nodes.get(&at.body);
+        let found = of_body.and_then(|u| u.get(&at.node));
+        found.copied().unwrap_or_default()
+    }
+
+    /// The displacements of a body by node.
+    pub fn of(&self, body: usize) -> Option<Arc<FxHashMap<usize, [f64; 3]>>> {
+        self.nodes.get(&body).cloned()
+    }
+
+    /// These displacements, counted from earlier ones.
+    pub fn since(&self, before: &Displaced) -> Displaced {
+        let of_body = |(&body, u): (&usize, &Arc<FxHashMap<usize, [f64; 3]>>)| {
+            let each = u.iter().map(|(&node, u)| {
+                let from = before.at(BodyNode { body, node });
+                (node, [0, 1, 2].map(|d| u[d] - from[d]))
+            });
+            (body, each.collect())
+        };
+        Displaced::new(self.nodes.iter().map(of_body).collect())
+    }
+}
+
+impl Scene {
+    /// The sides that may touch of some bodies, as (body, side).
+    pub(crate) fn sides_that_may_touch(
+        &self,
+        of: impl Fn(usize) -> bool,
+    ) -> BTreeSet<(usize, usize)> {
+        let mut out = BTreeSet::new();
+        for (k, interface) in self.interfaces.numbered() {
+            if interface.has_contact() {
+                let sides = self.sides_of(RowSource::Interface(k)).into_iter();
+                out.extend(sides.filter(|(body, _)| of(*body)));
+            }
+        }
+        let obstacles = self.obstacles.iter().filter(|o| of(o.body));
+        out.extend(obstacles.map(|o| (o.body, o.side)));
+        out
+    }
+
+    /// The nodes that may touch of some bodies, by body.
+    fn nodes_that_may_touch(
+        &self,
+        of: impl Fn(usize) -> bool,
+    ) -> FxHashMap<usize, BTreeSet<usize>> {
+        let mut out: FxHashMap<usize, BTreeSet<usize>> = FxHashMap::default();
+        if self.is_renewed() {
+            // Any of their sides may come to touch.
+            let all = self.bodies.iter().enumerate().filter(|(b, _)| of(*b));
+            return all
+                .map(|(b, body)| (b, body.mesh().boundary().into_iter().collect()))
+                .collect();
+        }
+        for (body, side) in self.sides_that_may_touch(&of) {
+            let nodes = self.bodies[body].mesh().side_nodes(side);
+            out.entry(body).or_default().extend(nodes);
+        }
+        for interface in self.interfaces.iter().filter(|i| i.has_contact()) {
+            for (k, &body) in interface.bodies.iter().enumerate().filter(|(_, b)| of(**b)) {
+                let nodes = interface.shared.iter().map(|s| s.nodes[k]);
+                out.entry(body).or_default().extend(nodes);
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,136 @@
+//! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
+
+use super::checked::Scene;
+use super::coefficient::{at, stiffest};
+use super::geometry::topology::{entities, rigid_motions};
+use super::matrices::Matrices;
+use super::model::steps::Factors;
+use crate::assembly::{self, SubdomainMesh};
+use base::Result;
+use fetifeti::substructures::{Subdomain, Substructures};
+use rayon::prelude::*;
+
+impl Scene {
+    /// The part of the problem that belongs to the subdomains for which `owns` holds: their matrices, and the rows at
+    /// points whose lowest subdomain is among them. With a partition of the subdomains over ranks every row is
+    /// provided exactly once.
+    ///
+    /// Subdomains are assembled in the caller's rayon pool.
+    ///
+    /// # Errors
+    /// [`Error::Input`](base::Error::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
+    pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
+        let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
+        let matrices = Matrices::default();
+        // Assembles all subdomains, then reports the first error in their order: the first error in time would be
+        // random.
+        let local: Vec<Result<Subdomain>> = mine
+            .par_iter()
+            .map(|&s| self.assemble_with(&self.subdomain_mesh(s)?, &matrices))
+            .collect();
+        let local: Result<Vec<Subdomain>> = local.into_iter().collect();
+        Ok(Substructures {
+            n_bodies: self.n_bodies(),
+            n_subdomains: self.n_subdomains(),
+            ragged: self.is_ragged(),
+            body_names: self.bodies.iter().map(|b| b.spec.name.clone()).collect(),
+            weak: self.weak_bodies(),
+            local: local?,
+            rows: self.rows(owns),
+        })
+    }
+
+    /// Subdomain `index`: matrix, load of the last load step, numbering, primal vertices. A pure function of the scene.
+    ///
+    /// # Errors
+    /// As [`Scene::substructures`].
+    pub fn subdomain(&self, index: usize) -> Result<Subdomain> {
+        let mesh = self.subdomain_mesh(index)?;
+        self.assemble(&mesh)
+    }
+
+    /// Subdomain `mesh.index` on its mesh, for callers that keep the mesh.
+    ///
+    /// # Errors
+    /// [`Error::Input`](base::Error::Input) for a load that is not finite.
+    pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
+        self.assemble_with(mesh, &Matrices::default())
+    }
+
+    /// The same; its matrix may be known.
+    fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &Matrices) -> Result<Subdomain> {
+        let (body, inside) = self.place(mesh.index);
+        let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
+        let f = match mesh.prescribed.iter().all(|u| *u == 0.0) {
+            true => mesh.free(&load),
+            false => assembly::free_load(mesh, &assembly::given_columns(mesh), &load),
+        };
+        let whole = body.mesh();
+        let nodes = whole.subdomain_nodes(inside);
+        let k = matrices.of(body, mesh, &nodes);
+        let n = f.len();
+        let c = body.components;
+        let mut dofs = Vec::with_capacity(n);
+        let mut rho = Vec::with_capacity(n);
+        let mut coordinates = Vec::with_capacity(n);
+        let mut primal = Vec::new();
+        let stiffest = stiffest(mesh);
+        for (node, of_body) in nodes.into_iter().enumerate() {
+            let own = &mesh.dof[c * node..c * (node + 1)];
+            if own.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
+                continue;
+            }
+            let first = body.first_dof + (of_body * c) as u64;
+            for (component, &dof) in own.iter().enumerate() {
+                if dof == SubdomainMesh::PRESCRIBED {
+                    continue;
+                }
+                dofs.push(first + component as u64);
+                if whole.is_vertex(of_body) {
+                    primal.push(dof);
+                }
+                rho.push(stiffest[node]);
+                coordinates.push(mesh.points[node]);
+            }
+        }
+        let mut near_kernel = match c {
+            1 => vec![vec![1.0; n]],
+            _ => rigid_motions(body, mesh),
+        };
+        let (mut k, mut idle) = (k, Vec::new());
+        if let Some(slack) = self.slack_of(mesh.body) {
+            k = slack.held(k, body, &dofs);
+            near_kernel = slack.near_kernel(near_kernel, body, &dofs);
+            idle = slack.parts(body, mesh, &whole.subdomain_nodes(inside));
+        }
+        Ok(Subdomain {
+            index: mesh.index,
+            body: mesh.body,
+            entities: entities(body, inside, mesh, &dofs),
+            k,
+            f,
+            dofs,
+            rho,
+            primal,
+            near_kernel: Some(near_kernel),
+            coordinates: Some(coordinates),
+            idle,
+        })
+    }
+
+    /// Squares of the error norms (L², H¹ seminorm, energy) of the nodal values on `mesh` against the exact solution;
+    /// `None` if the scene has no exact solution.
+    pub fn error_squares(&self, mesh: &SubdomainMesh, nodal: &[f64]) -> Option<[f64; 3]> {
+        let exact = self.exact.as_ref()?;
+        let (body, inside) = self.place(mesh.index);
+        Some(assembly::error_squares(mesh, nodal, |point| {
+            let at = at(body, inside, point).variables;
+            let mut out = ([0.0; 3], [[0.0; 3]; 3]);
+            for (i, e) in exact.iter().enumerate() {
+                let value = e.eval_gradient(&at);
+                (out.0[i], out.1[i]) = (value.value, value.gradient);
+            }
+            out
+        }))
+    }
+}

@@ -1,0 +1,94 @@
+//! All rows of a scene: what its interfaces, obstacles and equations come to.
+
+use super::bounds::Checks;
+use super::equations::{Chain, Equation};
+use super::mortar;
+use super::mortar_row::MortarRow;
+use super::obstacles::Obstacle;
+use super::points::Point;
+use crate::body::Body;
+use crate::geometry::interface::Interface;
+use crate::model::spec::SceneSpec;
+use crate::model::steps::{Factors, Steps};
+use crate::rows::equations;
+use crate::rows::points;
+use base::Result;
+use std::collections::HashSet;
+
+/// The rows, and sentences about them.
+pub(crate) struct Rows {
+    pub points: Vec<Point>,
+    pub mortar: Vec<MortarRow>,
+    pub equations: Vec<Equation>,
+    pub notes: Vec<String>,
+}
+
+/// What rows are made of.
+pub(crate) struct Joined<'a> {
+    pub spec: &'a SceneSpec,
+    pub interfaces: &'a mut [Interface],
+    pub obstacles: &'a [Obstacle],
+    /// Rows between sides whose nodes do not match that are known already.
+    pub known: Vec<MortarRow>,
+    /// The subdomains at whose points rows are wanted. All are, where rows lead from point to point: where there are
+    /// equations, or sides whose nodes do not match.
+    pub owns: &'a dyn Fn(usize) -> bool,
+}
+
+impl Joined<'_> {
+    /// Makes the rows; given values are checked against those of load step `step`, or of all steps.
+    ///
+    /// # Errors
+    /// [`Error::Input`](base::Error::Input) where given values contradict rows.
+    pub fn rows(
+        self,
+        bodies: &mut [Body],
+        steps: &Option<Steps>,
+        step: Option<usize>,
+    ) -> Result<Rows> {
+        let spec = self.spec;
+        // Rows beside obstacles are added to points that are known.
+        let beside: HashSet<usize> = self.obstacles.iter().map(|o| o.body).collect();
+        let wanted = |p: &Point| {
+            (self.owns)(p.subdomain) || p.members.iter().any(|m| beside.contains(&m.body))
+        };
+        let near =
+            |(b, body): (usize, &Body)| beside.contains(&b) || body.subdomains().any(self.owns);
+        let near: Vec<bool> = bodies.iter().enumerate().map(near).collect();
+        let mut points = points::collect(bodies, self.interfaces, &|b| near[b], &wanted)?;
+        let mut checks = Checks::new(bodies, self.obstacles, spec, steps);
+        if let Some(step) = step {
+            checks.factors = vec![Factors::of(steps, step)?];
+        }
+        checks.apply(&mut points)?;
+        points.retain(|p| (self.owns)(p.subdomain));
+        points.shrink_to_fit();
+        let (mut mortar, notes) = mortar::collect(
+            bodies,
+            &spec.form,
+            self.interfaces,
+            &points,
+            &checks,
+            self.known,
+        )?;
+        let mut equations = equations::collect(bodies, &spec.equations)?;
+        let of_equations = equations.iter_mut().map(|e| Chain {
+            terms: &e.terms,
+            block: &mut e.block,
+            subdomain: &mut e.subdomain,
+        });
+        let of_mortar = mortar.iter_mut().map(|m| Chain {
+            terms: &m.terms,
+            block: &mut m.block,
+            subdomain: &mut m.subdomain,
+        });
+        let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
+        equations::join(bodies, &mut points, &mut chains);
+        Ok(Rows {
+            points,
+            mortar,
+            equations,
+            notes,
+        })
+    }
+}

@@ -1,0 +1,320 @@
+//! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
+
+use super::entry::both;
+use super::mortar_row::MortarRow;
+use super::obstacles::Obstacle;
+use super::points::{Inequality, Point, PointRow};
+use crate::body::Body;
+use crate::model::profile::Limit;
+use crate::model::spec::SceneSpec;
+use crate::model::steps::{Factors, Steps};
+use crate::quantity::unfit_length;
+use crate::rows::at_node::AtNode;
+use crate::validate::agree;
+use base::{Error, Result};
+use fetifeti::substructures::{BodyNode, RowSource};
+use std::collections::HashMap;
+
+/// The data against which inequalities are checked.
+pub(crate) struct Checks<'a> {
+    pub bodies: &'a [Body],
+    pub obstacles: &'a [Obstacle],
+    /// Where every contact and obstacle was written, by number of its entry.
+    pub written: Vec<&'a str>,
+    /// The factors of every load step.
+    pub factors: Vec<Factors<'a>>,
+}
+
+/// The tightest bound at one step, and the number of the entry that it comes from.
+type Tightest = (f64, Option<usize>);
+
+impl<'a> Checks<'a> {
+    /// The checks of a scene.
+    pub fn new(
+        bodies: &'a [Body],
+        obstacles: &'a [Obstacle],
+        spec: &'a SceneSpec,
+        steps: &'a Option<Steps>,
+    ) -> Checks<'a> {
+        let contacts = spec.contacts.iter().map(|c| c.written.as_str());
+        let rest = spec.obstacles.iter().map(|o| o.written.as_str());
+        Checks {
+            bodies,
+            obstacles,
+            written: contacts.chain(rest).collect(),
+            factors: Factors::every(steps),
+        }
+    }
+
+    /// Drops the contact rows that ties or given values decide, and adds the rows of obstacles.
+    ///
+    /// # Errors [`Error::Input`] if ties or given values violate an inequality, or if two bounds contradict each other.
+    pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
+        for point in points.iter_mut() {
+            let mut rows = std::mem::take(&mut point.rows);
+            let mut decided = Vec::with_capacity(rows.len());
+            for row in &mut rows {
+                decided.push(self.is_decided(point, row)?);
+            }
+            let mut decided = decided.into_iter();
+            rows.retain(|_| decided.next() == Some(false));
+            point.rows = rows;
+        }
+        self.add_bounds(points)?;
+        for point in points.iter() {
+            self.check_between(point)?;
+        }
+        Ok(())
+    }
+
+    /// Whether ties or given values decide a row. Stores the given values on both sides of a contact.
+    fn is_decided(&self, point: &Point, row: &mut PointRow) -> Result<bool> {
+        let (Some(inequality), [Some(a), Some(b)]) = (&mut row.inequality, row.members) else {
+            return Ok(false);
+        };
+        let members = [a, b].map(|m| point.members[m]);
+        let sides = members.map(|m| m.along(self.bodies, row.direction));
+        inequality.given = [0, 1].map(|k| sides[k].given);
+        let fixed = sides.iter().all(|s| s.terms.is_empty());
+        let tied = point.tied_to[a] == point.tied_to[b];
+        for factors in &self.factors {
+            let (gap, entry) = self.finite(factors, &inequality.limits, members[0])?;
+            let gap = gap + inequality.distance;
+            let fail = |why: String| {
+                let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
+                let at = members[0].spot(self.bodies);
+                Err(Error::Input(format!(
+                    "{}{} {why} at {at}{}, which contradicts their contact \
+                     (u of `{a}` − u of `{b}` ≤ {gap} was expected)",
+                    self.place(entry, members[1]),
+                    both(a, b),
+                    factors.when()
+                )))
+            };
+            if fixed {
+                let [v, w] = inequality.given.map(|given| given * factors.dirichlet());
+                if exceeds(v - w, gap) {
+                    return fail(format!("have the given values {v} and {w}"));
+                }
+            } else if tied && exceeds(0.0, gap) {
+                return fail("are tied through others".into());
+            }
+        }
+        Ok(tied || fixed)
+    }
+
+    /// Whether given values decide a row between sides whose nodes do not match.
+    pub fn is_decided_mortar(&self, row: &MortarRow) -> Result<bool> {
+        let first = row.members[0].expect("every row has a first member");
+        if !row.terms.is_empty() {
+            if let Some(inequality) = &row.inequality {
+                for factors in &self.factors {
+                    self.finite(factors, &inequality.limits, first)?;
+                }
+            }
+            return Ok(false);
+        }
+        let named = row.members.iter().flatten();
+        let named: Vec<String> = named
+            .map(|m| format!("`{}`", self.bodies[m.body].spec.name))
+            .collect();
+        let who = match named.len() {
+            1 => format!("body {} contradict its obstacle", named[0]),
+            _ => format!("bodies {} contradict their joint", named.join(" and ")),
+        };
+        let at = first.spot(self.bodies);
+        for factors in &self.factors {
+            let c = row.right_hand_side(factors);
+            let wrong = match row.inequality {
+                Some(_) => exceeds(0.0, c),
+                None => !agree(c, 0.0),
+            };
+            if wrong {
+                return Err(Error::Input(format!(
+                    "{}the given values of {who} at {at}{} by {}",
+                    self.bodies[first.body].spec.written,
+                    factors.when(),
+                    c.abs()
+                )));
+            }
+        }
+        Ok(true)
+    }
+
+    /// The tightest bound at a step; an error if the bound times its factor is not finite.
+    fn finite(
+        &self,
+        factors: &Factors<'_>,
+        limits: &[Limit],
+        member: BodyNode,
+    ) -> Result<Tightest> {
+        let (value, entry) = factors.bound(limits);
+        let Some(expected) = unfit_length(value) else {
+            return Ok((value, entry));
+        };
+        Err(Error::Input(format!(
+            "{}the bound of body `{}` with its factor is {value:e} at {}{} where {expected}",
+            self.place(entry, member),
+            self.bodies[member.body].spec.name,
+            member.spot(self.bodies),
+            factors.when()
+        )))
+    }
+
+    /// The place for messages: the entry, or the body if the default made the contact.
+    fn place(&self, entry: Option<usize>, member: BodyNode) -> &str {
+        let written = entry.and_then(|e| self.written.get(e).copied());
+        written.unwrap_or(&self.bodies[member.body].spec.written)
+    }
+
+    /// Adds a row at every free node beside an obstacle, in a new point if the node has none yet.
+    fn add_bounds(&self, points: &mut Vec<Point>) -> Result<()> {
+        if self.obstacles.is_empty() {
+            return Ok(());
+        }
+        let mut index: HashMap<BodyNode, (usize, usize)> = HashMap::new();
+        for (p, point) in points.iter().enumerate() {
+            let members = point.members.iter().enumerate();
+            index.extend(members.map(|(m, member)| (*member, (p, m))));
+        }
+        for (o, obstacle) in self.obstacles.iter().enumerate() {
+            let body = obstacle.body;
+            for same in obstacle.limits.all().chunk_by(|a, b| a.node == b.node) {
+                let node = same[0].node;
+                let member = BodyNode { body, node };
+                let (distance, direction) = obstacle.ahead(node);
+                let side = member.along(self.bodies, direction);
+                if side.terms.is_empty() {
+                    self.check_given(obstacle, member, side.given, distance)?;
+                    continue;
+                }
+                if obstacle.surface.is_some() {
+                    continue;
+                }
+                let &mut (p, m) = index.entry(member).or_insert_with(|| {
+                    points.push(Point::of(vec![member], self.bodies));
+                    (points.len() - 1, 0)
+                });
+                let rows = &mut points[p].rows;
+                // Sides of a body that meet at a corner or edge share a row there.
+                let before = rows.iter_mut().find(|row| {
+                    let other = self.obstacle(row);
+                    row.members[0] == Some(m)
+                        && other
+                            .is_some_and(|o| (o.upper, o.rigid) == (obstacle.upper, obstacle.rigid))
+                });
+                match before.and_then(|row| row.inequality.as_mut()) {
+                    Some(inequality) => inequality.limits.extend(same),
+                    None => rows.push(PointRow {
+                        members: [Some(m), None],
+                        direction,
+                        holds: true,
+                        inequality: Some(Box::new(Inequality {
+                            limits: same.to_vec(),
+                            distance,
+                            given: [side.given, 0.0],
+                        })),
+                        source: RowSource::Obstacle(o),
+                        node,
+                    }),
+                }
+            }
+        }
+        for point in points.iter_mut() {
+            let first = point.rows.iter().position(PointRow::is_beside_obstacle);
+            let Some(first) = first else { continue };
+            let bounds = &mut point.rows[first..];
+            bounds.sort_by_key(|row| (row.members[0], self.obstacle(row).map(|o| o.upper)));
+            for k in 1..bounds.len() {
+                let same = bounds[k].members[0] == bounds[k - 1].members[0];
+                let rigid = self.obstacle(&bounds[k]).is_some_and(|o| o.rigid.is_some());
+                bounds[k].holds = rigid || !same;
+            }
+        }
+        points.sort_by_key(|p| p.block);
+        Ok(())
+    }
+
+    /// The obstacle that a row comes from.
+    fn obstacle(&self, row: &PointRow) -> Option<&'a Obstacle> {
+        match row.source {
+            RowSource::Obstacle(o) => Some(&self.obstacles[o]),
+            RowSource::Interface(_) | RowSource::Equation(_) => None,
+        }
+    }
+
+    fn check_given(
+        &self,
+        obstacle: &Obstacle,
+        member: BodyNode,
+        given: f64,
+        distance: f64,
+    ) -> Result<()> {
+        for factors in &self.factors {
+            let (bound, entry) = self.finite(factors, obstacle.limits.at(member.node), member)?;
+            let bound = bound + distance;
+            // `given` is the value along the row's direction; messages report u itself.
+            let signed = given * factors.dirichlet();
+            let value = if obstacle.upper { signed } else { 0.0 - signed };
+            if exceeds(signed, bound) {
+                let at = member.spot(self.bodies);
+                let (relation, bound) = if obstacle.upper {
+                    ("≤", bound)
+                } else {
+                    ("≥", 0.0 - bound)
+                };
+                let what = if obstacle.rigid.is_some() || obstacle.surface.is_some() {
+                    "n·u"
+                } else {
+                    "u"
+                };
+                return Err(Error::Input(format!(
+                    "{}body `{}` has the given value {value} at {at}{}, \
+                     beyond its obstacle ({what} {relation} {bound} was expected)",
+                    self.place(entry, member),
+                    self.bodies[member.body].spec.name,
+                    factors.when()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the lower bound of a node does not lie above its upper bound.
+    fn check_between(&self, point: &Point) -> Result<()> {
+        let mut below: Option<&PointRow> = None;
+        for row in &point.rows {
+            let (Some(obstacle), [Some(m), _]) = (self.obstacle(row), row.members) else {
+                continue;
+            };
+            let (member, limits) = (point.members[m], &row.limits());
+            let partner =
+                below.filter(|other| other.members == row.members && obstacle.rigid.is_none());
+            for factors in &self.factors {
+                let (above, entry) = self.finite(factors, limits, member)?;
+                let Some(partner) = partner else { continue };
+                let (below, _) = self.finite(factors, partner.limits(), member)?;
+                if exceeds(0.0, below + above) {
+                    return Err(Error::Input(format!(
+                        "{}the obstacles of body `{}` leave nothing at {}{}: below = {} and above = {above} \
+                         (below ≤ above was expected)",
+                        self.place(entry, member),
+                        self.bodies[member.body].spec.name,
+                        member.spot(self.bodies),
+                        factors.when(),
+                        0.0 - below
+                    )));
+                }
+            }
+            if below.is_none_or(|other| other.members != row.members) {
+                below = Some(row);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether `value` lies above `bound` by more than rounding.
+fn exceeds(value: f64, bound: f64) -> bool {
+    value - bound > 1e-10 * 1.0_f64.max(value.abs()).max(bound.abs())
+}

@@ -1,0 +1,88 @@
+//! An entry of [[tie]] or [[contact]], and its name in messages.
+
+use crate::body::Body;
+use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
+use crate::model::profile::Profile;
+
+/// One entry, a tie or a contact.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry<'a> {
+    pub pair: &'a Pair,
+    pub extent: &'a Extent,
+    pub written: &'a str,
+    /// The data of a contact; `None`: a tie.
+    pub contact: Option<Contact<'a>>,
+    /// Its number, ties before contacts, if it names the sides: it applies to the interface of these sides only.
+    pub own: Option<usize>,
+}
+
+/// The data of a contact beyond its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact<'a> {
+    pub gap: &'a Profile,
+    /// Number of the entry, `None` for the default.
+    pub number: Option<usize>,
+}
+
+impl<'a> Entry<'a> {
+    pub fn tie(number: usize, spec: &'a TieSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: None,
+            own: spec.sides.map(|_| number),
+        }
+    }
+
+    /// Contact `number`, after `ties` ties.
+    pub fn contact(ties: usize, number: usize, spec: &'a ContactSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: Some(Contact {
+                gap: &spec.gap,
+                number: Some(number),
+            }),
+            own: spec.sides.map(|_| ties + number),
+        }
+    }
+
+    /// "tie" or "contact".
+    pub fn what(&self) -> &'static str {
+        match self.contact {
+            None => "tie",
+            Some(_) => "contact",
+        }
+    }
+
+    /// The place where it was written, for the middle of a sentence.
+    pub fn line(&self) -> &str {
+        match self.written.trim_end_matches(": ") {
+            "" => "another entry",
+            place => place,
+        }
+    }
+}
+
+/// Two bodies in messages, or the two sides of one that touches itself.
+pub(crate) fn both(a: &str, b: &str) -> String {
+    match a == b {
+        true => format!("both sides of body `{a}`"),
+        false => format!("bodies `{a}` and `{b}`"),
+    }
+}
+
+/// The first few names, for messages.
+pub(crate) fn some_names(bodies: &[Body]) -> String {
+    let mut names: Vec<String> = bodies
+        .iter()
+        .take(6)
+        .map(|b| format!("`{}`", b.spec.name))
+        .collect();
+    if bodies.len() > 6 {
+        names.push("…".into());
+    }
+    names.join(", ")
+}

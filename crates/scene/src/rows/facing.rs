@@ -1,0 +1,260 @@
+//! The interfaces of sides that an entry of [[tie]] or [[contact]] names.
+
+use crate::body::Body;
+use crate::geometry::facing::opposite;
+use crate::geometry::interface::Interface;
+use crate::geometry::matching::{apart, Matching, Mismatch};
+use crate::geometry::single::{has_lonely_nodes, Reached};
+use crate::geometry::{mortar, overlap};
+use crate::model::joints::{Extent, Pair};
+use crate::model::spec::SceneSpec;
+use base::{Error, Result};
+use fetifeti::substructures::BodyNode;
+use std::collections::{HashMap, HashSet};
+
+/// Interfaces of facing sides that an entry names; they replace the interface of the touching pair. Of ties with a
+/// tolerance, by number, the nodes that lie farther away are returned.
+pub(super) fn facing(
+    bodies: &[Body],
+    mut matching: Matching<'_>,
+    spec: &SceneSpec,
+    interfaces: &mut Vec<Interface>,
+) -> Result<Vec<(usize, Vec<BodyNode>)>> {
+    let ties = spec.ties.iter().map(|t| Named {
+        sides: t.sides,
+        pair: &t.pair,
+        which: t.multipliers.unwrap_or(0),
+        adjust: (t.adjust, &[]),
+        distance: None,
+        extent: &t.extent,
+        written: &t.written,
+    });
+    let contacts = spec.contacts.iter().map(|c| Named {
+        sides: c.sides,
+        pair: &c.pair,
+        which: c.multipliers.unwrap_or(0),
+        adjust: (c.adjust, &c.adjusted),
+        distance: c.distance,
+        extent: &c.extent,
+        written: &c.written,
+    });
+    let mut numbers = HashMap::new();
+    for (k, body) in bodies.iter().enumerate() {
+        numbers.entry(body.spec.name.as_str()).or_insert(k);
+    }
+    let mut far = Vec::new();
+    for (number, entry) in ties.chain(contacts).enumerate() {
+        let (Some(sides), Pair::Named(first, second)) = (entry.sides, entry.pair) else {
+            continue;
+        };
+        let find = |name: &String| numbers.get(name.as_str()).copied();
+        let (Some(a), Some(b)) = (find(first), find(second)) else {
+            // The check of entries that name bodies reports this error.
+            continue;
+        };
+        if a == b && sides[0] == sides[1] {
+            let side = bodies[a].mesh().side_name(sides[0]);
+            return entry.error(&format!(
+                "the side `{side}` of body `{first}` is named twice (two of its sides were expected)"
+            ));
+        }
+        // The first body of the entry carries the multipliers, unless it says something else.
+        let (pair, sides, which) = match a <= b {
+            true => ([a, b], sides, entry.which),
+            false => ([b, a], [sides[1], sides[0]], 1 - entry.which),
+        };
+        let is_contact = number >= spec.ties.len();
+        let matched = entry.matched(bodies, &mut matching, pair, sides);
+        let mut interface = match *entry.extent {
+            Extent::Within { distance, .. } if !is_contact => {
+                let reached = Reached::new(bodies, &spec.form, (pair, sides), which, distance);
+                let of = |&node: &usize| BodyNode {
+                    body: pair[which],
+                    node,
+                };
+                far.push((number, reached.far.iter().map(of).collect()));
+                entry.within(
+                    bodies,
+                    &mut matching,
+                    spec,
+                    (pair, sides, which),
+                    (matched, reached),
+                )?
+            }
+            // Nodes of no face have nothing to integrate over.
+            Extent::Within { .. } if has_lonely_nodes(&bodies[pair[which]].spec, sides[which]) => {
+                let touching =
+                    Reached::touching(bodies, &spec.form, (pair, sides), which, entry.reach());
+                let found = touching.interface(bodies, &spec.form, (pair, sides), which);
+                match found {
+                    Some(found) => found,
+                    None => return entry.error(&apart(bodies, pair, sides)),
+                }
+            }
+            _ => entry.whole(
+                bodies,
+                &mut matching,
+                spec,
+                (pair, sides, which),
+                (matched, is_contact),
+            )?,
+        };
+        let (within, adjusted) = entry.adjust;
+        let adjusted: HashSet<&BodyNode> = adjusted.iter().collect();
+        // The first body of the entry is the second of the pair if its number is higher.
+        let first = usize::from(pair[0] != a);
+        let shared = interface.shared.iter().map(|s| s.nodes[first]);
+        for (i, (distance, node)) in interface.distances.iter_mut().zip(shared).enumerate() {
+            if distance.abs() <= within || adjusted.contains(&BodyNode { body: a, node }) {
+                interface.adjusted.insert(i, 0.0 - *distance);
+                *distance = 0.0;
+            }
+        }
+        if let Some(why) = overlap::too_large(bodies, &interface) {
+            return entry.error(&why);
+        }
+        interface.entry = Some(number);
+        interfaces.push(interface);
+    }
+    let of_entries = interfaces.iter().filter(|i| i.entry.is_some());
+    let named: HashSet<[usize; 2]> = of_entries.map(|i| i.bodies).collect();
+    interfaces.retain(|i| i.entry.is_some() || !named.contains(&i.bodies));
+    interfaces.sort_by_key(|i| i.bodies);
+    Ok(far)
+}
+
+/// An entry that may name sides.
+struct Named<'s> {
+    sides: Option<[usize; 2]>,
+    pair: &'s Pair,
+    /// Which of its two bodies carries the multipliers.
+    which: usize,
+    /// Gaps up to this length count as touching, and those of these nodes of the first body.
+    adjust: (f64, &'s [BodyNode]),
+    distance: Option<f64>,
+    extent: &'s Extent,
+    written: &'s str,
+}
+
+/// Two bodies in increasing order, a side of each, and which of the two carries the multipliers.
+type Sides = ([usize; 2], [usize; 2], usize);
+
+/// The interface of nodes that lie opposite each other, or why there is none.
+type Matched = std::result::Result<Interface, String>;
+
+impl Named<'_> {
+    fn error<T>(&self, why: &str) -> Result<T> {
+        Err(Error::Input(format!("{}{why}", self.written)))
+    }
+
+    /// How far apart the sides may be.
+    fn reach(&self) -> f64 {
+        self.distance.unwrap_or(f64::INFINITY)
+    }
+
+    /// The nodes of both sides that lie opposite each other.
+    fn matched(
+        &self,
+        bodies: &[Body],
+        matching: &mut Matching<'_>,
+        pair: [usize; 2],
+        sides: [usize; 2],
+    ) -> Matched {
+        // Sides of boxes that the user names meet as a whole; those that are found, as far as they are near.
+        let grids = pair.map(|k| bodies[k].mesh().grid());
+        match (grids, self.distance) {
+            ([Some(x), Some(y)], None) => match opposite(bodies, [x, y], pair, sides) {
+                Some(interface) => Ok(interface),
+                None => {
+                    let Pair::Named(a, b) = self.pair else {
+                        unreachable!("who names sides names bodies")
+                    };
+                    let who = match a == b {
+                        true => format!("body `{a}`"),
+                        false => format!("bodies `{a}` and `{b}`"),
+                    };
+                    Err(format!("the sides of {who} do not face each other"))
+                }
+            },
+            _ => match matching.find(pair, sides, self.reach()) {
+                Ok(found) => Ok(found.clone()),
+                Err(Mismatch::Apart(why)) => Err(why),
+                // Whether nodes match does not matter to mortar rows: without those the sides do not meet.
+                Err(Mismatch::Lonely) => Err(apart(bodies, pair, sides)),
+            },
+        }
+    }
+
+    /// The interface of all that lies opposite.
+    fn whole(
+        &self,
+        bodies: &[Body],
+        matching: &mut Matching<'_>,
+        spec: &SceneSpec,
+        (pair, sides, which): Sides,
+        (matched, is_contact): (Matched, bool),
+    ) -> Result<Interface> {
+        let other = match matched {
+            Ok(found) if !is_contact || !mortar::is_for_contact(bodies, &found) => {
+                return Ok(found)
+            }
+            other => other,
+        };
+        // Several entries may have the same sides.
+        let found = matching.mortar(&spec.form, (pair, sides), which, self.reach());
+        // Without a common part of faces, nodes that match stay what they are.
+        found
+            .clone()
+            .map_or(other, Ok)
+            .or_else(|why| self.error(&why))
+    }
+
+    /// The interface of the nodes within the tolerance: those that have a node opposite, or the sides as a whole where
+    /// nothing lies farther away, or node by node.
+    fn within(
+        &self,
+        bodies: &[Body],
+        matching: &mut Matching<'_>,
+        spec: &SceneSpec,
+        (pair, sides, which): Sides,
+        (matched, reached): (Matched, Reached),
+    ) -> Result<Interface> {
+        let held = reached.nodes();
+        if let Ok(mut found) = matched {
+            let meant = |i: &Interface| {
+                i.shared
+                    .iter()
+                    .filter(|s| held.contains(&s.nodes[which]))
+                    .count()
+            };
+            if !held.is_empty() && meant(&found) == held.len() {
+                found.keep(|shared| held.contains(&shared.nodes[which]));
+                return Ok(found);
+            }
+        }
+        let mut found = None;
+        let (tolerance, singly) = match *self.extent {
+            Extent::Within { distance, singly } => (distance, singly),
+            _ => (f64::INFINITY, false),
+        };
+        if !singly && reached.far.is_empty() && !reached.alone {
+            found.clone_from(matching.mortar(&spec.form, (pair, sides), which, f64::INFINITY));
+        }
+        let found = found.or_else(|| reached.interface(bodies, &spec.form, (pair, sides), which));
+        found.map_or_else(
+            || {
+                let of = |k: usize| {
+                    let spec = &bodies[pair[k]].spec;
+                    format!("side `{}` of `{}`", spec.mesh.side_name(sides[k]), spec.name)
+                };
+                self.error(&format!(
+                    "no node of {} lies within {tolerance} of {}, so the tie joins nothing (a larger position \
+                     tolerance was expected)",
+                    of(which),
+                    of(1 - which)
+                ))
+            },
+            Ok,
+        )
+    }
+}

@@ -1,0 +1,274 @@
+//! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
+
+use super::entry::both;
+use super::meeting::{Meeting, Pair};
+use super::reach::Reach;
+use crate::body::Body;
+use crate::geometry::interface::{Interface, Link, Shape};
+use crate::model::profile::Limit;
+use crate::model::steps::Factors;
+use crate::rows::at_node::AtNode;
+use crate::validate::agree;
+use base::linalg::union_find::UnionFind;
+use base::{Error, Result};
+use fetifeti::substructures::{BodyNode, RowSource};
+
+/// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Its number: the lowest body dof at the point, unique in the scene.
+    pub block: u64,
+    /// The subdomain of lowest index that contains the point; the rank that owns it provides the rows.
+    pub subdomain: usize,
+    /// The nodes, by increasing body and node.
+    pub members: Vec<BodyNode>,
+    /// Lowest member (index into `members`) to which each member is tied; the member itself if there is no lower one.
+    pub tied_to: Vec<usize>,
+    /// The rows: pairs of members first, then members beside obstacles. There are no equalities where u is given, and
+    /// no inequalities that given values or ties decide.
+    pub rows: Vec<PointRow>,
+}
+
+/// A row at a point: u_a − u_b = 0 (tie), u_a − u_b ≤ g (contact) or u_a ≤ g (obstacle), each along a direction.
+///
+/// A pair that shares a face has a row if the face is tied or in contact there, or is open there but tied elsewhere. A
+/// pair that meets only in a corner has a row if ties connect it: the rows are fully redundant at cross points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointRow {
+    /// Indices a, b into [`Point::members`]. An equality has the lower index first, a contact the order of its
+    /// inequality; a row beside an obstacle has no b.
+    pub members: [Option<usize>; 2],
+    /// The unit vector along which u is taken: a component, or the normal out of a.
+    pub direction: [f64; 3],
+    /// Whether the row holds initially. An equality that does not hold marks candidate contact nodes; of two bounds at
+    /// one node only the lower one can hold.
+    pub holds: bool,
+    /// The data of an inequality; `None`: an equality.
+    pub inequality: Option<Box<Inequality>>,
+    /// The interface or obstacle that it comes from.
+    pub source: RowSource,
+    /// Index into the `shared` of that interface, or the node of the body beside the obstacle.
+    pub node: usize,
+}
+
+/// The right-hand side of an inequality: the tightest of its limits, the initial distance, and the given values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inequality {
+    /// The bounds of all entries that select the node.
+    pub limits: Vec<Limit>,
+    /// The initial distance.
+    pub distance: f64,
+    /// The given values of u along the direction at a and at b, without the factors of load steps.
+    pub given: [f64; 2],
+}
+
+/// The points of a scene that satisfy `wanted`, each of which has a node of a body that is `near`. Nodes that are tied
+/// to a given value are added to the given nodes of their body, at all points.
+pub(crate) fn collect(
+    bodies: &mut [Body],
+    interfaces: &[Interface],
+    near: &dyn Fn(usize) -> bool,
+    wanted: &dyn Fn(&Point) -> bool,
+) -> Result<Vec<Point>> {
+    let mut out: Vec<Point> = Vec::new();
+    let mut inherited = Vec::new();
+    // A given value is passed on by a tie to a body that has it.
+    let ties = (interfaces.iter()).any(|i| i.shared.iter().any(|s| s.link == Link::Tied));
+    let passes_on = |b: usize| ties && !bodies[b].prescribed.is_empty();
+    let from = (0..bodies.len()).map(|b| near(b) || passes_on(b)).collect();
+    let reach = Reach::of(from, |b| bodies[b].mesh().n_nodes(), interfaces);
+    let meeting = Meeting::of(bodies, interfaces, &reach);
+    for (members, met) in meeting.sets() {
+        let mut point = Point::of(members.to_vec(), bodies);
+        let mut pairs: Vec<Pair> = met.collect();
+        point.tied_to = joined(members.len(), &pairs, interfaces, &|l| l == Link::Tied);
+        let components = bodies[members[0].body].components;
+        for c in 0..components {
+            prescribe(bodies, &point, c, &mut inherited)?;
+        }
+        if wanted(&point) {
+            add_rows(&mut point, &mut pairs, interfaces, components);
+            out.push(point);
+        }
+    }
+    for (BodyNode { body, node }, component, value) in inherited {
+        let body = &mut bodies[body];
+        body.prescribed
+            .push((node * body.components + component, value));
+    }
+    for body in bodies.iter_mut() {
+        body.prescribed.sort_by_key(|&(dof, _)| dof);
+    }
+    for Point { members, rows, .. } in &mut out {
+        rows.retain(|row| {
+            let ends = || row.members.iter().flatten().map(|&m| members[m]);
+            let free = |m: BodyNode| !m.along(bodies, row.direction).terms.is_empty();
+            row.inequality.is_some() || ends().all(free)
+        });
+    }
+    Ok(out)
+}
+
+/// u at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given
+/// terms.
+pub(crate) struct Along {
+    pub terms: Vec<(u64, f64)>,
+    pub given: f64,
+}
+
+impl PointRow {
+    /// The right-hand side c at a load step; 0 for an equality.
+    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
+        let inequality = self.inequality.as_ref();
+        inequality.map_or(0.0, |i| {
+            i.right_hand_side(factors, self.members[1].is_some())
+        })
+    }
+
+    /// The bounds of an inequality; empty for an equality.
+    pub(crate) fn limits(&self) -> &[Limit] {
+        self.inequality.as_ref().map_or(&[], |i| &i.limits)
+    }
+
+    /// Whether it comes from an obstacle.
+    pub fn is_beside_obstacle(&self) -> bool {
+        matches!(self.source, RowSource::Obstacle(_))
+    }
+}
+
+impl Inequality {
+    /// The right-hand side at a load step; `paired`: there is a b.
+    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>, paired: bool) -> f64 {
+        let (mut g, _) = factors.bound(&self.limits);
+        g += self.distance;
+        // The row is u_a ≤ g + u_b, or −u_b ≤ g − u_a.
+        let [a, b] = self.given.map(|given| given * factors.dirichlet());
+        g -= a;
+        if paired {
+            g += b;
+        }
+        g
+    }
+}
+
+impl Point {
+    /// The point of these members, the lowest body first.
+    pub(crate) fn of(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
+        let first = members[0];
+        let body = &bodies[first.body];
+        // A body that touches itself has several nodes at the point.
+        let own = members.iter().filter(|m| m.body == first.body);
+        let owner = own.map(|m| body.mesh().owner(m.node)).min();
+        Point {
+            block: first.dof(bodies, 0),
+            subdomain: body.first_subdomain + owner.expect("a point has a node"),
+            tied_to: (0..members.len()).collect(),
+            rows: Vec::new(),
+            members,
+        }
+    }
+}
+
+/// The unit vector along component `c`.
+fn unit(c: usize) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[c] = 1.0;
+    out
+}
+
+/// For each of `n` members the lowest one to which pairs lead whose links satisfy `counts`.
+fn joined(
+    n: usize,
+    pairs: &[Pair],
+    interfaces: &[Interface],
+    counts: &dyn Fn(Link) -> bool,
+) -> Vec<usize> {
+    let mut sets = UnionFind::new(n);
+    for pair in pairs.iter().filter(|p| counts(p.link(interfaces))) {
+        sets.join(pair.members[0], pair.members[1]);
+    }
+    (0..n).map(|m| sets.find(m)).collect()
+}
+
+/// Adds a row for each pair that gets one; contacts without effect are dropped later.
+fn add_rows(point: &mut Point, pairs: &mut [Pair], interfaces: &[Interface], components: usize) {
+    let may_join = joined(point.members.len(), pairs, interfaces, &|l| {
+        matches!(l, Link::Tied | Link::Open)
+    });
+    pairs.sort_by_key(|p| p.members);
+    for pair in pairs.iter() {
+        let interface = &interfaces[pair.interface];
+        let (link, [a, b]) = (pair.link(interfaces), pair.members);
+        let contact = link.is_contact();
+        let corner = interface.shape == Shape::Corner && !contact;
+        let by = |sets: &[usize]| corner && sets[a] == sets[b];
+        let holds = link == Link::Tied || by(&point.tied_to) || contact;
+        // If other faces tie the two members, an open row would be redundant.
+        let open = (link == Link::Open || by(&may_join)) && point.tied_to[a] != point.tied_to[b];
+        if !(holds || open) {
+            continue;
+        }
+        let order = if contact { interface.order } else { [0, 1] };
+        let row = |direction| PointRow {
+            members: order.map(|k| Some(pair.members[k])),
+            direction,
+            holds,
+            inequality: contact.then(|| {
+                Box::new(Inequality {
+                    limits: interface.limits.at(pair.node).to_vec(),
+                    distance: interface.distances[pair.node],
+                    given: [0.0; 2],
+                })
+            }),
+            source: RowSource::Interface(pair.interface),
+            node: pair.node,
+        };
+        if contact && components > 1 {
+            point.rows.push(row(interface.normal_in_order(pair.node)));
+        } else {
+            point.rows.extend((0..components).map(|c| row(unit(c))));
+        }
+    }
+}
+
+/// Adds a node to `inherited` if it is tied to a given value: the node is then given itself.
+fn prescribe(
+    bodies: &[Body],
+    point: &Point,
+    component: usize,
+    inherited: &mut Vec<(BodyNode, usize, f64)>,
+) -> Result<()> {
+    for root in 0..point.members.len() {
+        if point.tied_to[root] != root {
+            continue;
+        }
+        let tied: Vec<BodyNode> = (0..point.members.len())
+            .filter(|&m| point.tied_to[m] == root)
+            .map(|m| point.members[m])
+            .collect();
+        let given: Vec<Option<f64>> = tied.iter().map(|m| m.given(bodies, component)).collect();
+        let Some((k, value)) = given
+            .iter()
+            .enumerate()
+            .find_map(|(k, v)| v.map(|v| (k, v)))
+        else {
+            continue;
+        };
+        for (m, &own) in tied.iter().zip(&given) {
+            match own {
+                Some(other) if !agree(value, other) => {
+                    return Err(Error::Input(format!(
+                        "{}{} are tied at {}, where they prescribe {value} and {other} \
+                         (equal values were expected)",
+                        bodies[m.body].spec.written,
+                        both(&bodies[tied[k].body].spec.name, &bodies[m.body].spec.name),
+                        m.spot(bodies),
+                    )));
+                }
+                Some(_) => {}
+                None => inherited.push((*m, component, value)),
+            }
+        }
+    }
+    Ok(())
+}

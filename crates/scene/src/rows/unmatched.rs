@@ -1,0 +1,110 @@
+//! Common faces of which the nodes do not match, and no entry names the sides.
+
+use super::surfaces::{shortest, NEAR};
+use crate::body::Body;
+use crate::geometry::interface::{Interface, Shape};
+use crate::geometry::matching::{Matching, Mismatch};
+use crate::geometry::mortar;
+use crate::model::joints::{Extent, Pair};
+use crate::model::spec::{ByDefault, SceneSpec};
+use std::collections::HashMap;
+
+/// Common faces of boxes whose nodes do not match become interfaces with mortar rows where entries mean all of them or
+/// a range; single nodes have to match.
+pub(super) fn unmatched(
+    bodies: &[Body],
+    matching: &mut Matching<'_>,
+    spec: &SceneSpec,
+    interfaces: &mut [Interface],
+) {
+    let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
+    let ties = spec.ties.iter();
+    let ties = ties.map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
+    let contacts = spec.contacts.iter();
+    let contacts = contacts.map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
+    // The entries that name no sides, by number: those of all pairs, and those of each pair of names.
+    let mut of_all = Vec::new();
+    let mut of_names: HashMap<[&str; 2], Vec<_>> = HashMap::new();
+    for (number, (pair, which, extent, sides)) in ties.chain(contacts).enumerate() {
+        let entry = (number, pair, which, extent);
+        match pair {
+            _ if sides.is_some() => {}
+            Pair::All => of_all.push(entry),
+            Pair::Named(a, b) => of_names.entry(in_order(a, b)).or_default().push(entry),
+            Pair::Surfaces(..) => {}
+        }
+    }
+    for interface in interfaces {
+        let names = interface.bodies.map(|k| &bodies[k].spec.name);
+        let [a, b] = names;
+        // Which body the entry says, in the order of the pair; `None`: the entry is of another pair.
+        let meant = |pair: &Pair, which: Option<usize>| match pair {
+            Pair::All => Some(which.unwrap_or(0)),
+            Pair::Named(x, y) if x == a && y == b => Some(which.unwrap_or(0)),
+            Pair::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
+            _ => None,
+        };
+        let mut which = None;
+        let (mut single, mut contact) = (false, false);
+        let named = of_names.get(&in_order(a, b)).into_iter().flatten();
+        let mut entries: Vec<_> = of_all.iter().chain(named).collect();
+        entries.sort_by_key(|entry| entry.0);
+        for &&(number, pair, of_entry, extent) in &entries {
+            let Some(found) = meant(pair, of_entry) else {
+                continue;
+            };
+            single |= !whole(extent) && *extent != Extent::None;
+            contact |= number >= spec.ties.len();
+            if which.is_none() || *pair != Pair::All {
+                which = Some(found);
+            }
+        }
+        if single || (which.is_none() && spec.default == ByDefault::Free) {
+            continue;
+        }
+        let (pair, sides) = (interface.bodies, interface.sides);
+        contact |= which.is_none() && spec.default == ByDefault::Contact;
+        let reach = match contact && mortar::is_for_contact(bodies, interface) {
+            true => Some(near(matching, interface)),
+            false => loose(bodies, matching, interface),
+        };
+        let Some(reach) = reach else {
+            continue;
+        };
+        let which = which.unwrap_or(0);
+        if let Some(found) = mortar::interface(bodies, &spec.form, pair, sides, which, reach) {
+            *interface = found;
+        }
+    }
+}
+
+/// Two names in their order.
+fn in_order<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// How far apart the sides of a common face with nodes that do not match may be; `None` for other interfaces.
+fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) -> Option<f64> {
+    if !interface.unmatched.is_empty() {
+        return (interface.shape == Shape::Face).then_some(f64::INFINITY);
+    }
+    let (pair, sides) = (interface.bodies, interface.sides);
+    let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.is_straight();
+    if pair.iter().all(|&k| unbent(k)) {
+        return None;
+    }
+    // Curved sides with different meshes are different polygons. What seems to be a corner may be a face of which no
+    // cell has all nodes in common with the other body.
+    let reach = near(matching, interface);
+    let found = matching.find(pair, sides, reach);
+    matches!(found, Err(Mismatch::Lonely)).then_some(reach)
+}
+
+/// How far apart sides may be that touch: a part of their shortest edge.
+fn near(matching: &mut Matching<'_>, interface: &Interface) -> f64 {
+    let mut edge = |k: usize| {
+        let surface = matching.surface(interface.bodies[k], interface.sides[k]);
+        shortest(&surface.edges)
+    };
+    NEAR * edge(0).min(edge(1))
+}
