@@ -32,8 +32,6 @@ stop() {
 packages=(build-essential ca-certificates pkg-config libopenmpi-dev openmpi-bin libclang-dev libopenblas0-serial)
 [ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev)
 [ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)
-# The orderings METIS (through CHOLMOD of SuiteSparse) and Scotch; the build goes without what is missing.
-[ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)
 if $TESTS; then
     # PETSc's own examples, a Fortran compiler, petsc4py and CMake are for the tests of the plug-in.
     packages+=(gfortran cmake)

@@ -18,7 +18,6 @@ mod setup;
 pub(crate) mod spectrum;
 pub mod subdomain;
 
-pub use cholesky::interior::{LocalSolver, Ordering, Solver};
 pub use facts::Facts;
 pub use krylov::certificate::Kkt;
 pub use krylov::certified::{Certified, Uncertified, Verdict};

@@ -3,7 +3,6 @@
 use super::jump::coupled::MANY;
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
-use cholesky::interior::LocalSolver;
 use petsc::{named, Options, Session};
 
 /// The preconditioner of the dual problem.
@@ -238,8 +237,6 @@ pub struct MethodSettings {
     pub adaptive_max: usize,
     /// `fetifeti_recycle`: number of directions that are kept for the next load.
     pub recycle: usize,
-    /// `fetifeti_local_solver` and `fetifeti_local_ordering`: the factorisation of subdomains.
-    pub local: LocalSolver,
     /// `fetifeti_threads`: threads of this rank; `None` means the cores of the machine divided by the ranks on it.
     pub threads: Option<usize>,
     /// Blocks of rows between bodies that have more rows than this are scaled with a sparse factorisation. There is no
@@ -278,7 +275,6 @@ impl Default for MethodSettings {
             adaptive: Adaptive::Auto,
             adaptive_max: 100,
             recycle: 0,
-            local: LocalSolver::default(),
             threads: None,
             coupled: MANY,
             keeps_analyses: false,
@@ -346,7 +342,7 @@ impl MethodSettings {
         self.recycle = o.usize("recycle", self.recycle, help)?;
         let help = "threads per rank; 0: the cores of the machine divided by the ranks on it";
         self.threads = o.count("threads", self.threads, help)?;
-        self.local = self.local.from_options(&o)?;
+        removed(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
         let help = "a guaranteed bound of the error in the energy norm, and estimates of the discretisation error";
@@ -385,4 +381,18 @@ impl MethodSettings {
             Some(_) => CoarseFunctions::All,
         })
     }
+}
+
+/// Refuses the options that chose another factorisation of subdomains until 0.2: none was ever faster.
+fn removed(o: &Options) -> Result<()> {
+    for (name, there) in [("local_solver", "multifrontal"), ("local_ordering", "nd")] {
+        let asked = o.get_string(name)?.unwrap_or_default();
+        if !["", "auto", there].contains(&&asked[..]) {
+            return Err(Error::input(format!(
+                "option {} is \"{asked}\", which is not there any more: it was never faster than {there}",
+                o.full_name(name)
+            )));
+        }
+    }
+    Ok(())
 }

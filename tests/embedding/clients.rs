@@ -76,7 +76,7 @@ fn mfem() {
 #[test]
 fn dmplex_with_a_snes() {
     let scratch = Scratch::new("client-plex");
-    let source = "examples/clients/plex_newton.c";
+    let source = "../../examples/clients/plex_newton.c";
     let program = Program::own("mpicc", &scratch, source);
     let newton = "-snes_linesearch_type basic -snes_rtol 1e-12 -snes_view_solution binary";
     let direct = "-ksp_type preonly -pc_type lu -pc_factor_mat_solver_type mumps";

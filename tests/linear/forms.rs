@@ -222,15 +222,18 @@ fn sparse_solves_on_ranks() {
     assert_eq!(mixed["operators"]["single"], 16);
     let (a, b) = (number(&dense["energy"]), number(&mixed["energy"]));
     assert!((a - b).abs() < 1e-9 * a.abs(), "mixed: {a} {b}");
-    let args = [
-        "solve",
-        &scene,
-        "-fetifeti_operators",
-        "implicit",
-        "-fetifeti_local_solver",
-        "faer",
-    ];
-    let out = run_fetifeti(1, &args);
-    assert_eq!(out.code, 2);
-    assert!(out.all().contains("local_solver is faer"), "{}", out.all());
+    // Other local solvers are not there any more; the names of ours still are.
+    for (option, value, code) in [
+        ("-fetifeti_local_solver", "faer", 2),
+        ("-fetifeti_local_ordering", "scotch", 2),
+        ("-fetifeti_local_ordering", "nd", 0),
+    ] {
+        let out = run_fetifeti(1, &["solve", &scene, option, value]);
+        assert_eq!(out.code, code, "{}", out.all());
+        let said = out.all();
+        assert!(
+            code == 0 || said.contains(option) && said.contains("not there any more"),
+            "{said}"
+        );
+    }
 }

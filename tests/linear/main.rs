@@ -8,7 +8,6 @@ mod deflation;
 mod direct;
 mod forms;
 mod lifting;
-mod local_solvers;
 mod mortar;
 mod mortar_operators;
 mod spectra;

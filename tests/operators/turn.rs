@@ -6,7 +6,7 @@ use crate::matrices::{distance, random};
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::orthogonal::Matrix;
-use cholesky::interior::LocalSolver;
+use cholesky::interior::Condenser;
 use cholesky::symbolic::Keep;
 use fetifeti::feti::subdomain::problem::LocalProblem;
 use fetifeti::feti::subdomain::scaled::Scaled;
@@ -83,7 +83,7 @@ impl Sample {
 
     fn local(&self, k: &Csr, form: OperatorForm) -> LocalProblem {
         let averages: Vec<&[u32]> = self.averages.iter().map(|a| &a[..]).collect();
-        let condenser = LocalSolver::default().condenser(Keep::Interior);
+        let condenser = Condenser::alone(Keep::Interior);
         let places = Some(&self.places[..]);
         LocalProblem::new(
             k,

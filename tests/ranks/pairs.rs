@@ -18,7 +18,7 @@ use scene::Scene;
 const UNSET: &str = "";
 
 /// The options with all their names; numbers by a few values.
-const OPTIONS: [(&str, &[&str]); 18] = [
+const OPTIONS: [(&str, &[&str]); 16] = [
     (
         "pc_type",
         &["auto", "none", "lumped", "dirichlet", "coarse_corrected"],
@@ -35,8 +35,6 @@ const OPTIONS: [(&str, &[&str]); 18] = [
     ),
     ("primal", &["vertices", "vertices,edges", "vertices,faces"]),
     ("precision", &["double", "mixed"]),
-    ("local_solver", &["multifrontal", "faer"]),
-    ("local_ordering", &["auto", "nd", "amd"]),
     ("memory", &[UNSET, "1"]),
     ("recycle", &[UNSET, "20"]),
     ("ksp_type", &["cg", "gmres", "fcg"]),
@@ -84,15 +82,6 @@ const SCENES: [(&str, &str); 5] = [
     ),
 ];
 
-/// Sparse solves go with our own local solver alone: the one combination that is bad input.
-fn is_refused(run: &[usize]) -> bool {
-    let chosen = |option: &str, value: &str| {
-        let mut all = OPTIONS.iter().zip(run);
-        all.any(|(o, &v)| o.0 == option && o.1[v] == value)
-    };
-    chosen("operators", "implicit") && chosen("local_solver", "faer")
-}
-
 /// Runs, each with the number of a value for every option, so that every pair of values of two options is in one of
 /// them: of some random runs the one with the most pairs that are new is taken, until no pair is left.
 fn runs() -> Vec<Vec<usize>> {
@@ -106,11 +95,6 @@ fn runs() -> Vec<Vec<usize>> {
             }
         }
     }
-    left.retain(|&(b, w, a, v)| {
-        let mut run = vec![0; sizes.len()];
-        (run[b], run[a]) = (w, v);
-        !is_refused(&run)
-    });
     let mut out = vec![vec![0; sizes.len()]];
     let pairs = |run: &[usize]| -> Vec<(usize, usize, usize, usize)> {
         let of = |a: usize| (0..a).map(move |b| (b, a));
@@ -125,9 +109,6 @@ fn runs() -> Vec<Vec<usize>> {
         for _ in 0..60 {
             let mut run: Vec<usize> = sizes.iter().map(|n| rng.below(*n)).collect();
             (run[b], run[a]) = (w, v);
-            if is_refused(&run) {
-                continue;
-            }
             let new = pairs(&run).iter().filter(|p| left.contains(p)).count();
             if best.as_ref().is_none_or(|best| new > best.0) {
                 best = Some((new, run));

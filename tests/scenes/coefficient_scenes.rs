@@ -221,12 +221,12 @@ fn the_plan_says_how_far_the_coefficient_ranges() {
         (
             "checkerboard",
             "ρ from 1 to 10000, inside a body by a factor of up to 10000; \
-                          examples/scenes/coefficients_checkerboard.txt, 16 x 16 cells\n",
+                          ../../examples/scenes/coefficients_checkerboard.txt, 16 x 16 cells\n",
         ),
         (
             "channels",
             "ρ from 1 to 1e6, inside a body by a factor of up to 1e6; \
-                      examples/scenes/coefficients_channels.png, 96 x 96 cells\n",
+                      ../../examples/scenes/coefficients_channels.png, 96 x 96 cells\n",
         ),
         ("inclusions", "E from 1 to "),
         (

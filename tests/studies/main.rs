@@ -8,7 +8,6 @@ mod benchmarks;
 mod hard_cases;
 mod hertz;
 mod kappa;
-mod kernels;
 mod scaling;
 mod speed_error;
 mod walls;

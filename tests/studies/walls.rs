@@ -1,7 +1,7 @@
 //! `study walls --quick`: every wall is solved, in few steps, on one rank and on two.
 
 use crate::support::keys::{self, Keys};
-use crate::support::sample::{all_cases, of, sample};
+use crate::support::sample::{all_cases, sample};
 use crate::support::{mpi, program};
 use lab::study::walls::{Walls, WallsReport, FAMILIES, JUMPS};
 use mpi::Scratch;

@@ -6,9 +6,6 @@ use std::{env, fs};
 
 include!("names.rs");
 
-/// Orderings by the C libraries that usually come with PETSc.
-const ORDERINGS: [&str; 3] = ["ordering.h", "metis.c", "scotch.c"];
-
 fn main() {
     for file in [
         "build.rs",
@@ -18,9 +15,6 @@ fn main() {
         "shim.c",
         "process.c",
     ] {
-        println!("cargo:rerun-if-changed={file}");
-    }
-    for file in ORDERINGS {
         println!("cargo:rerun-if-changed={file}");
     }
     for var in [
@@ -53,7 +47,6 @@ fn main() {
 
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
     shim(&include);
-    orderings(&include, &petsc.link_paths, &out);
     bindings(&include, &out);
 
     // The loader does not search the directories of a private build; the top crate turns these into an rpath.
@@ -174,74 +167,6 @@ fn shim(include: &[PathBuf]) {
         .define("PETSC_SKIP_COMPLEX", None)
         .flag_if_supported("-Wno-unused-parameter")
         .compile("fetifeti_shim");
-}
-
-/// Compiles the wrappers of the ordering libraries; the wrapper of an absent library returns FF_ABSENT.
-fn orderings(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
-    let mut build = cc::Build::new();
-    build.includes(include).flag("-Wno-unused-parameter");
-    let found: Vec<&Library> = LIBRARIES
-        .iter()
-        .filter(|l| links(l, include, lib, out))
-        .collect();
-    for library in &found {
-        build.define(library.define, None);
-    }
-    build
-        .files(ORDERINGS.iter().filter(|file| file.ends_with(".c")))
-        .compile("fetifeti_ordering");
-    // Libraries come after the archive that needs them.
-    for name in found.iter().flat_map(|l| l.names) {
-        println!("cargo:rustc-link-lib={name}");
-    }
-}
-
-/// A library that the build can do without.
-struct Library {
-    define: &'static str,
-    names: &'static [&'static str],
-    /// A program that uses it; some systems put its headers into a directory of their own, others do not.
-    program: &'static str,
-}
-
-const LIBRARIES: [Library; 2] = [
-    Library {
-        define: "FF_HAVE_METIS",
-        names: &["cholmod"],
-        program: "#if __has_include(<suitesparse/cholmod.h>)\n\
-                  #include <suitesparse/cholmod.h>\n#else\n#include <cholmod.h>\n#endif\n\
-                  int main(void) { cholmod_common c; return !cholmod_start(&c) || !&cholmod_metis; }\n",
-    },
-    Library {
-        define: "FF_HAVE_SCOTCH",
-        names: &["scotch", "scotcherr"],
-        program: "#include <stdio.h>\n#include <stdint.h>\n\
-                  #if __has_include(<scotch/scotch.h>)\n\
-                  #include <scotch/scotch.h>\n#else\n#include <scotch.h>\n#endif\n\
-                  int main(void) { SCOTCH_Graph g; return SCOTCH_graphInit(&g); }\n",
-    },
-];
-
-/// Whether a program with this library compiles and links.
-fn links(library: &Library, include: &[PathBuf], lib: &[PathBuf], out: &Path) -> bool {
-    let name = library.names[0];
-    let source = out.join(format!("has_{name}.c"));
-    if fs::write(&source, library.program).is_err() {
-        return false;
-    }
-    let mut compiler = cc::Build::new();
-    compiler.includes(include).warnings(false);
-    let mut command = compiler.get_compiler().to_command();
-    command
-        .arg(&source)
-        .arg("-o")
-        .arg(out.join(format!("has_{name}")));
-    for dir in lib {
-        command.arg(format!("-L{}", dir.display()));
-        command.arg(format!("-Wl,-rpath-link,{}", dir.display()));
-    }
-    command.args(library.names.iter().map(|n| format!("-l{n}")));
-    command.output().is_ok_and(|run| run.status.success())
 }
 
 fn bindings(include: &[PathBuf], out: &Path) {

@@ -2,4 +2,3 @@
 #include <petscksp.h>
 #include <slepceps.h>
 #include "shim.h"
-#include "ordering.h"

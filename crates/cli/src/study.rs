@@ -10,9 +10,7 @@ use super::first_rank::on_first_rank;
 use base::{Error, Result};
 use fetifeti::feti::MethodSettings;
 use lab::baselines::launch::Workspace;
-use lab::study::{
-    adaptive, benchmarks, hard_cases, hertz, kappa, kernels, scaling, speed_error, walls,
-};
+use lab::study::{adaptive, benchmarks, hard_cases, hertz, kappa, scaling, speed_error, walls};
 use petsc::Session;
 use report::destination::Destination;
 use report::output;
@@ -37,7 +35,6 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
         StudyName::HardCases => task.hard_cases(),
         StudyName::Kappa => task.kappa(),
         StudyName::Scaling => task.scaling(petsc),
-        StudyName::Kernels => task.kernels(),
         StudyName::SpeedError => task.speed_error(),
         StudyName::Walls => task.walls(),
     }
@@ -181,18 +178,6 @@ impl Task<'_> {
                 .iter()
                 .flat_map(|stem| ["csv", "png", "svg"].map(|end| format!("{stem}.{end}")));
             Ok(files.collect())
-        })
-    }
-
-    fn kernels(&self) -> Result<()> {
-        let mut progress = self.progress();
-        let report = kernels::run(self.session, self.quick, self.case(), &mut progress)?;
-        self.finish(&report, &kernels::text(&report), |dir| {
-            let both = [
-                ("kernels", kernels::table(&report)),
-                ("kernels-summary", kernels::summary(&report)),
-            ];
-            tables(dir, &both)
         })
     }
 

@@ -5,8 +5,7 @@
 //! - PETSc owns the captured data of a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) and drops it with the object.
 //! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
 //!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
-//! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The libraries of `ordering`, which come with it, are
-//!   called without it, one thread at a time.
+//! - Nothing that is PETSc's is `Send`: PETSc is not thread safe.
 
 #![allow(unsafe_code)]
 
@@ -24,7 +23,6 @@ mod mat;
 mod matis;
 mod nested;
 mod options;
-pub mod ordering;
 mod partition;
 mod pc;
 mod scatter;

@@ -8,7 +8,7 @@ use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
-use cholesky::interior::{LocalSolver, NoFactor};
+use cholesky::interior::{Condenser, NoFactor};
 use cholesky::symbolic::Keep;
 use parallel::team::Team;
 
@@ -91,10 +91,7 @@ fn unturned(
     let averages = jump.averages[j].iter().filter(|a| a.weights.is_none());
     let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
     let (delta, vertices) = like.gamma.interface.split_at(like.gamma.n_delta);
-    let (places, condenser) = (
-        sub.coordinates.as_deref(),
-        LocalSolver::default().condenser(Keep::Interior),
-    );
+    let (places, condenser) = (sub.coordinates.as_deref(), Condenser::alone(Keep::Interior));
     let form = OperatorForm::Explicit;
     let mut out = LocalProblem::new(&sub.k, delta, vertices, &averages, places, condenser, form)?;
     if like.packed.is_some() {

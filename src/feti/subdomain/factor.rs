@@ -12,12 +12,13 @@ use super::scaled::Scaled;
 use super::which::OperatorForm;
 use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
-use crate::feti::settings::{Adaptive, MethodSettings, Operators, PcType, Scaling};
+use crate::feti::settings::{Adaptive, MethodSettings, PcType, Scaling};
 use crate::feti::subdomain::equal;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
-use cholesky::interior::{Analysed, Condenser, LocalSolver, NoFactor, Solver};
+use cholesky::interior::{Analysed, Analysis, Condenser, NoFactor};
 use cholesky::multifrontal::SingularInterior;
+use cholesky::symbolic::Symbolic;
 use parallel::team::Team;
 use petsc::Session;
 
@@ -41,15 +42,6 @@ pub(crate) fn factor(
     let wants_s = kind == PcType::CoarseCorrected
         || settings.scaling == Some(Scaling::Deluxe)
         || matches!(settings.adaptive, Adaptive::Below(_));
-    let ours = settings.local.kind == Solver::Multifrontal;
-    if !ours && settings.operators == Operators::Implicit {
-        return Err(Error::input(format!(
-            "option -{}operators is implicit, which goes with the local solver multifrontal alone, \
-             but -{0}local_solver is {}",
-            settings.prefix,
-            settings.local.kind.name()
-        )));
-    }
     let first = equal::representatives(problem, jump, team);
     let kinds = forms::kinds(problem, jump, &first);
     let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
@@ -62,11 +54,7 @@ pub(crate) fn factor(
         &kinds,
         &forms_so_far,
         team,
-        if ours {
-            settings.operators
-        } else {
-            Operators::Explicit
-        },
+        settings.operators,
         forms::APPLICATIONS[usize::from(jump.inequality.iter().any(|i| *i))],
         settings
             .memory
@@ -79,17 +67,10 @@ pub(crate) fn factor(
     }
     let found = |j: usize| kept.get(j).and_then(|k| k.analysed.clone());
     let keeps = settings.keeps_analyses;
-    let analysed = analyses(
-        &kinds,
-        (&forms, &needed),
-        (&found, keeps),
-        team,
-        settings.local,
-    );
+    let analysed = analyses(&kinds, (&forms, &needed), (&found, keeps), team);
     let make = |k: usize, j: usize| {
         let (kind, sub) = (&kinds[k], &problem.local[j]);
         let condenser = Condenser {
-            solver: settings.local,
             analysed: analysed[k].as_deref(),
             keep: kind.keep(),
         };
@@ -164,7 +145,6 @@ fn analyses(
     (forms, needed): (&[OperatorForm], &[bool]),
     (found, keeps): (&dyn Fn(usize) -> Option<Arc<Analysed>>, bool),
     team: &Team,
-    solver: LocalSolver,
 ) -> Vec<Option<Arc<Analysed>>> {
     let mut groups: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
     let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
@@ -202,11 +182,9 @@ fn analyses(
         let (k, analysed) = &open[g];
         let kind = &kinds[*k];
         let interface = [kind.delta, kind.primal].concat();
-        let made = solver.analyse(&kind.sub.k, &interface, kind.sub.coordinates.as_deref());
-        // A failed analysis is repeated, and reported, for each of its kinds.
-        if let Ok(made) = made {
-            let _ = analysed.dense.set(made);
-        }
+        let places = kind.sub.coordinates.as_deref();
+        let made = Analysis::new(Symbolic::new(&kind.sub.k, &interface, places));
+        let _ = analysed.dense.set(Arc::new(made));
     });
     out
 }
@@ -229,7 +207,6 @@ pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFacto
         NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {
             unfit_matrix(problem, sub, dof)
         }
-        NoFactor::Failed(why) => Error::environment(why),
     }
 }
 

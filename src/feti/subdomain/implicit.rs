@@ -17,7 +17,7 @@ use super::basis::Basis;
 use super::which::Operator;
 use base::linalg::csr::Csr;
 use base::linalg::dense::{self, Dense, Scratch};
-use cholesky::interior::{Analysed, Own};
+use cholesky::interior::{Analysed, Analysis};
 use cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use cholesky::symbolic::Symbolic;
 
@@ -74,7 +74,7 @@ impl Implicit {
         let known = analysed.and_then(|a| a.sparse.get());
         let new = known
             .is_none()
-            .then(|| Own::new(Symbolic::new(k, vertices, coordinates)));
+            .then(|| Analysis::new(Symbolic::new(k, vertices, coordinates)));
         let of_held = known.map_or_else(|| new.as_ref().expect("made just now"), |k| &k[0]);
         let Ok((held, s_vv)) = of_held.solver(k) else {
             return Ok(None);
@@ -91,7 +91,7 @@ impl Implicit {
             None => {
                 let places: Option<Vec<[f64; 3]>> =
                     coordinates.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
-                let of_interior = Own::new(Symbolic::new(&k_inside, &[], places.as_deref()));
+                let of_interior = Analysis::new(Symbolic::new(&k_inside, &[], places.as_deref()));
                 let made = of_interior.solver(&k_inside).map_err(singular)?;
                 if let (Some(analysed), Some(of_held)) = (analysed, new) {
                     // Another thread may have left them in the meantime, which are the same.

@@ -30,7 +30,7 @@ use super::which::OperatorForm;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::symmetric::Symmetric;
-use cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
+use cholesky::interior::{Condenser, Factor, NoFactor};
 use cholesky::symbolic::Keep;
 
 /// Largest number of free motions that are searched in a subdomain that touches nothing: twice the rigid motions of a
@@ -163,7 +163,7 @@ impl LocalProblem {
         let at = averages.iter().map(|a| at.of(a));
         at.for_each(|at| basis.push_mean(at));
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-        if form == OperatorForm::Implicit && condenser.solver.kind == Solver::Multifrontal {
+        if form == OperatorForm::Implicit {
             let interface = [delta, primal].concat();
             // The dense form handles an interior that nothing holds.
             let (n_delta, known) = (delta.len(), condenser.analysed);
@@ -194,11 +194,11 @@ impl LocalProblem {
             match condenser.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => break (interface, factor, s),
                 // Nothing holds the interior: its free dof joins Γ and becomes a fixing dof there.
-                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
+                Err(e) if delta.len() < given + MOST_FREE => {
                     delta.push(e.dof);
                     condenser.analysed = None;
                 }
-                Err(e) => return Err(e),
+                Err(e) => return Err(e.into()),
             }
         };
         let mut out = LocalProblem {
@@ -232,7 +232,7 @@ impl LocalProblem {
         let (s, factor) = match &self.inside {
             Inside::Partial(factor) => (self.s(), factor.clone()),
             Inside::Implicit(_) => {
-                let condenser = LocalSolver::default().condenser(Keep::Interior);
+                let condenser = Condenser::alone(Keep::Interior);
                 let (factor, s) = condenser.condense(k, &self.gamma.interface, coordinates)?;
                 (Arc::new(s), Arc::new(factor))
             }

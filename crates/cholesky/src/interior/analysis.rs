@@ -1,45 +1,63 @@
 //! The analysis of a sparsity pattern, from which matrices with this pattern are factored.
 
-use std::fmt::Debug;
+use std::sync::{Arc, OnceLock};
 
-use super::factor::{Factor, SparseCholesky};
-use crate::multifrontal::SingularInterior;
-use crate::symbolic::Keep;
+use super::factor::Factor;
+use crate::multifrontal::{PartialCholesky, SingularInterior};
+use crate::symbolic::{Keep, Symbolic};
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 
-/// Why a matrix could not be factored.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum NoFactor {
-    /// A pivot of the interior is not positive: part of the subdomain is not held, or K is no stiffness matrix.
-    Interior(SingularInterior),
-    /// K is not positive semidefinite at this dof of the interface.
-    Indefinite(u32),
-    /// The library failed; the reason is one sentence without a full stop.
-    Failed(String),
-}
-
-impl From<SingularInterior> for NoFactor {
-    fn from(e: SingularInterior) -> NoFactor {
-        NoFactor::Interior(e)
-    }
+/// Analyses of one pattern with one interface. The first factorisation of each form makes what it needs, those after it
+/// take it from here.
+#[derive(Debug, Default)]
+pub struct Analysed {
+    /// With the interface last, for S as a dense matrix.
+    pub dense: OnceLock<Arc<Analysis>>,
+    /// Of K_rr and K_II, for S and T as sparse solves.
+    pub sparse: OnceLock<[Analysis; 2]>,
 }
 
 /// The part of a factorisation that depends on the pattern of K alone: one analysis serves all matrices of this
 /// pattern.
-pub trait Analysis: Debug + Send + Sync {
-    /// L Lᵀ of the whole matrix.
+#[derive(Debug)]
+pub struct Analysis {
+    symbolic: Arc<Symbolic>,
+    /// The fronts without the rows of the interface, built on first use.
+    inside: OnceLock<Arc<Symbolic>>,
+}
+
+impl Analysis {
+    /// The analysis with these fronts.
+    pub fn new(symbolic: Symbolic) -> Analysis {
+        Analysis {
+            symbolic: Arc::new(symbolic),
+            inside: OnceLock::new(),
+        }
+    }
+
+    /// Factors the interior of `k` for solves with it; returns S, too.
     ///
     /// # Errors
-    /// [`NoFactor`].
-    ///
-    /// # Panics
-    /// If the analysis was made with an interface.
-    fn factor(&self, k: &Csr) -> Result<Box<dyn SparseCholesky>, NoFactor>;
+    /// A pivot that vanishes.
+    pub fn solver(&self, k: &Csr) -> Result<(PartialCholesky, Dense), SingularInterior> {
+        PartialCholesky::inside(k, &self.symbolic, self.inside())
+    }
 
     /// Eliminates the interior; returns the factor and S (both triangles, in the order of the interface).
     ///
     /// # Errors
-    /// [`NoFactor`].
-    fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor>;
+    /// A pivot that vanishes.
+    pub fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), SingularInterior> {
+        let (factor, s) = match keep {
+            Keep::Boundary => PartialCholesky::new(k, self.symbolic.clone())?,
+            Keep::Interior => self.solver(k)?,
+        };
+        Ok((Factor::new(k, &self.symbolic.interface, factor, keep), s))
+    }
+
+    fn inside(&self) -> Arc<Symbolic> {
+        let inside = || Arc::new(self.symbolic.inside());
+        self.inside.get_or_init(inside).clone()
+    }
 }

@@ -1,23 +1,8 @@
-//! Condensed loads and interior solutions, for the factor of any solver.
-
-use std::fmt::Debug;
+//! Condensed loads and interior solutions.
 
 use crate::multifrontal::PartialCholesky;
 use crate::symbolic::Keep;
 use base::linalg::csr::Csr;
-use base::linalg::dense::Dense;
-
-/// L Lᵀ of a symmetric positive definite matrix; any thread may use it.
-pub trait SparseCholesky: Debug + Send + Sync {
-    /// x ← K⁻¹ x.
-    fn solve(&self, x: &mut [f64]);
-
-    /// The same for several vectors of equal length.
-    fn solve_many(&self, x: &mut [Vec<f64>]);
-
-    /// Bytes held by the factor.
-    fn bytes(&self) -> usize;
-}
 
 /// The factored interior of a subdomain.
 ///
@@ -26,7 +11,7 @@ pub trait SparseCholesky: Debug + Send + Sync {
 /// of `work` depends on the kind of factor.
 #[derive(Debug)]
 pub enum Factor {
-    /// [L_II; L_ΓI] by fronts, from either solver: each direction costs half a solve.
+    /// [L_II; L_ΓI] by fronts: each direction costs half a solve.
     Fronts(PartialCholesky),
     /// Solves with K_II: each direction costs a whole solve.
     Solves(Condensation),
@@ -37,7 +22,7 @@ impl Factor {
     pub(crate) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
         match keep {
             Keep::Boundary => Factor::Fronts(fronts),
-            Keep::Interior => Factor::Solves(Condensation::new(k, interface, Box::new(fronts))),
+            Keep::Interior => Factor::Solves(Condensation::new(k, interface, fronts)),
         }
     }
 
@@ -86,7 +71,7 @@ impl Factor {
 #[derive(Debug)]
 pub struct Condensation {
     /// x ← [K_II⁻¹ x_I; 0].
-    interior: Box<dyn SparseCholesky>,
+    interior: PartialCholesky,
     interface: Vec<u32>,
     /// K_ΓI: a row for each interface dof, columns by dof.
     coupling: Csr,
@@ -94,7 +79,7 @@ pub struct Condensation {
 
 impl Condensation {
     /// `interior` solves with K_II on vectors by dof and leaves zero on the interface.
-    pub fn new(k: &Csr, interface: &[u32], interior: Box<dyn SparseCholesky>) -> Condensation {
+    pub fn new(k: &Csr, interface: &[u32], interior: PartialCholesky) -> Condensation {
         let inside = k.others(interface);
         let mut coupling = k.block(interface, &inside);
         let by_dof = |j: &mut u32| *j = inside[*j as usize];
@@ -106,14 +91,6 @@ impl Condensation {
             interface: interface.to_vec(),
             coupling,
         }
-    }
-
-    /// The factor of the whole of `k`, without an interface.
-    pub fn of_all(k: &Csr, factor: Box<dyn SparseCholesky>) -> (Factor, Dense) {
-        (
-            Factor::Solves(Condensation::new(k, &[], factor)),
-            Dense::default(),
-        )
     }
 
     /// The interface dofs, each with its row of K_ΓI.

@@ -8,7 +8,6 @@ pub mod benchmarks;
 pub mod hard_cases;
 pub mod hertz;
 pub mod kappa;
-pub mod kernels;
 pub mod scaling;
 mod solved;
 pub mod speed_error;

@@ -21,7 +21,7 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
         &[0, 8],
         &[],
         Some(x),
-        LocalSolver::default().condenser(Keep::Interior),
+        Condenser::alone(Keep::Interior),
         form,
     )
     .expect("definite");
@@ -64,7 +64,7 @@ fn an_indefinite_or_broken_matrix_is_refused() {
         }
         let delta: Vec<u32> = (0..12).collect();
         for form in [OperatorForm::Explicit, OperatorForm::Implicit] {
-            let condenser = LocalSolver::default().condenser(Keep::Interior);
+            let condenser = Condenser::alone(Keep::Interior);
             let made = LocalProblem::new(&k, &delta, &[], &[], Some(&x), condenser, form);
             assert!(made.is_err(), "{value}");
         }
@@ -82,7 +82,7 @@ fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
         &[],
         &[],
         Some(&x),
-        LocalSolver::default().condenser(Keep::Interior),
+        Condenser::alone(Keep::Interior),
         form,
     )
     .expect("one is held");
@@ -106,7 +106,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
             &vertices,
             &averages,
             Some(&x),
-            LocalSolver::default().condenser(Keep::Interior),
+            Condenser::alone(Keep::Interior),
             form,
         )
     };
