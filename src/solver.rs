@@ -133,9 +133,10 @@ impl FetiFeti {
 
     /// The solution, with a bound of its error if that was asked for. Collective.
     fn certified(&self, found: LinearSolution, steps: Vec<Step>) -> Result<Solution> {
-        let certified = match self.settings.method.certify {
-            true => Some(self.method.certified(&found)?),
-            false => None,
+        let certified = if self.settings.method.certify {
+            Some(self.method.certified(&found)?)
+        } else {
+            None
         };
         let mut solution = self.solution(found, steps);
         solution.certified = certified;
@@ -144,9 +145,10 @@ impl FetiFeti {
 
     /// Returns an error if the load drives a motion that nothing sees. Collective.
     fn check_idle(&self) -> Result<()> {
-        match self.idle {
-            true => idle::check(self.session().comm(), &self.problem().local),
-            false => Ok(()),
+        if self.idle {
+            idle::check(self.session().comm(), &self.problem().local)
+        } else {
+            Ok(())
         }
     }
 

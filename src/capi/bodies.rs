@@ -120,9 +120,12 @@ pub unsafe extern "C" fn FetiFetiUpdateMatrices(
         let list = o
             .session
             .agree(array(matrices, n, "the list of matrices"))?;
-        let one = |a: &raw::Mat| match a.is_null() {
-            true => Ok(None),
-            false => lent(*a, &o.session).map(Some),
+        let one = |a: &raw::Mat| {
+            if a.is_null() {
+                Ok(None)
+            } else {
+                lent(*a, &o.session).map(Some)
+            }
         };
         let list = list.iter().map(one).collect::<Result<Vec<_>>>()?;
         o.update_matrices(&list)
@@ -145,9 +148,10 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
 ) -> c_int {
     together(ff, c"FetiFetiAddMatIS", |o| {
         let a = lent(not_null(a, "Mat")?, &o.session)?;
-        match numbers.is_null() {
-            true => o.stack_matis(&a, body),
-            false => o.add_matis(&a, &list(o, numbers)?, body),
+        if numbers.is_null() {
+            o.stack_matis(&a, body)
+        } else {
+            o.add_matis(&a, &list(o, numbers)?, body)
         }
     })
 }

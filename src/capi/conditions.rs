@@ -21,9 +21,10 @@ pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
         // Values alone are read at each solve.
         o.changed.whole |= held != o.held;
         o.held = held;
-        o.held_values = match values.is_null() {
-            true => None,
-            false => Some(lent(values, &o.session)?),
+        o.held_values = if values.is_null() {
+            None
+        } else {
+            Some(lent(values, &o.session)?)
         };
         Ok(())
     })
@@ -211,9 +212,10 @@ fn contact_pairs(
     let kind = row_kind(kind, || "contact pairs are".into())?;
     let first = Side::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
     let second = Side::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
-    let gap = match gap.is_null() {
-        true => &[],
-        false => array(gap, first.dofs.len() as c_int, "gap")?,
+    let gap = if gap.is_null() {
+        &[]
+    } else {
+        array(gap, first.dofs.len() as c_int, "gap")?
     };
     pairs(o.session.rank(), &first, &second, gap, kind)
 }

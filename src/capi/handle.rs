@@ -97,9 +97,10 @@ pub(super) fn put<T>(to: *mut T, value: T) {
 }
 
 pub(super) fn not_null<T>(object: *mut T, what: &str) -> Result<*mut T> {
-    match object.is_null() {
-        true => Err(Fault::Null.error(format!("the {what} is NULL, expected one"))),
-        false => Ok(object),
+    if object.is_null() {
+        Err(Fault::Null.error(format!("the {what} is NULL, expected one")))
+    } else {
+        Ok(object)
     }
 }
 
@@ -121,9 +122,10 @@ pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
 
 /// The numbers of an index set; empty for NULL.
 pub fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
-    match is.is_null() {
-        true => Ok(Vec::new()),
-        false => lent(is, &o.session)?.indices(),
+    if is.is_null() {
+        Ok(Vec::new())
+    } else {
+        lent(is, &o.session)?.indices()
     }
 }
 

@@ -72,10 +72,11 @@ pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_char) -> c_int {
     alone(ff, c"FetiFetiSetOptionsPrefix", |o| {
-        o.prefix = match prefix.is_null() {
-            true => String::new(),
+        o.prefix = if prefix.is_null() {
+            String::new()
+        } else {
             // SAFETY: a string.
-            false => unsafe { CStr::from_ptr(prefix) }.to_string_lossy().into(),
+            unsafe { CStr::from_ptr(prefix) }.to_string_lossy().into()
         };
         o.changed.whole = true;
         Ok(())

@@ -161,9 +161,10 @@ impl Surfaces<'_> {
 /// # Errors
 /// Sides that do not face each other; if they would with the faces of one of them the other way round, it is said.
 fn samples(numbers: [usize; 2], first: &Side, second: &Side, wanted: f64) -> Result<Vec<Sample>> {
-    let reach = match wanted > 0.0 {
-        true => reach(first, second, wanted),
-        false => reach(first, second, f64::INFINITY),
+    let reach = if wanted > 0.0 {
+        reach(first, second, wanted)
+    } else {
+        reach(first, second, f64::INFINITY)
     };
     let found = mortar::samples(first, second, reach);
     if !found.is_empty() {

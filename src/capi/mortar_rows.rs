@@ -251,9 +251,10 @@ impl Object {
                 self.session.rank()
             )));
         }
-        match self.stack.is_empty() {
-            true => Ok(dof),
-            false => Ok(self.stack.number(k, dof)),
+        if self.stack.is_empty() {
+            Ok(dof)
+        } else {
+            Ok(self.stack.number(k, dof))
         }
     }
 }

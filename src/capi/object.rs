@@ -263,9 +263,10 @@ impl Object {
 
     /// A vector with the layout of right-hand sides. Collective.
     pub fn vector(&self) -> Result<PetscVec> {
-        let stacked = match self.stack.is_empty() {
-            true => None,
-            false => Some(self.stack.vector(&self.session)?),
+        let stacked = if self.stack.is_empty() {
+            None
+        } else {
+            Some(self.stack.vector(&self.session)?)
         };
         if let Some((local, global)) = self.sizes {
             let said = PetscVec::over_ranks(&self.session, local, global)?;

@@ -47,18 +47,17 @@ impl Object {
             self.solver = Some(solver);
             return Ok(None);
         }
-        let rows = match changed.rows || changed.gaps {
-            false => None,
-            true => {
-                let made = self.all_rows(&|dof| solver.is_known(dof));
-                match made {
-                    Ok(made) => Some(made),
-                    Err(error) => {
-                        self.solver = Some(solver);
-                        return Err(error);
-                    }
+        let rows = if changed.rows || changed.gaps {
+            let made = self.all_rows(&|dof| solver.is_known(dof));
+            match made {
+                Ok(made) => Some(made),
+                Err(error) => {
+                    self.solver = Some(solver);
+                    return Err(error);
                 }
             }
+        } else {
+            None
         };
         let (rows, mortars) = rows.unzip();
         if !changed.matrices {
@@ -99,9 +98,10 @@ impl Object {
     fn whole(&mut self) -> Result<Option<SetUp>> {
         self.work = [None, None, None];
         let mut torn = self.torn()?;
-        let states = match self.mortars.is_empty() {
-            true => HashMap::new(),
-            false => states(&self.session, &torn),
+        let states = if self.mortars.is_empty() {
+            HashMap::new()
+        } else {
+            states(&self.session, &torn)
         };
         let held = |dof: u32| states.get(&dof).map(|s| !s.is_free());
         (torn.rows, self.mortar_rows) = self.all_rows(&held)?;

@@ -159,9 +159,10 @@ type Key = (Vec<i32>, [u64; 3]);
 
 impl Node {
     fn key(&self) -> Key {
-        match self.dofs.iter().any(|&d| d >= 0) {
-            true => (self.dofs.clone(), [0; 3]),
-            false => (Vec::new(), self.x.map(f64::to_bits)),
+        if self.dofs.iter().any(|&d| d >= 0) {
+            (self.dofs.clone(), [0; 3])
+        } else {
+            (Vec::new(), self.x.map(f64::to_bits))
         }
     }
 }

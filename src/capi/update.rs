@@ -32,13 +32,10 @@ impl Object {
                 unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
                 let (k_now, map) = session.agree(a.local_part())?;
                 let same = all[k].map.as_ref() == Some(&map);
-                session.agree(match same {
-                    true => Ok(()),
-                    false => Err(Fault::WrongState.error(format!(
-                        "matrix {k} has another local-to-global map than when it was added, expected the same: \
-                         call FetiFetiReset and add all again"
-                    ))),
-                })?;
+                session.agree(if same { Ok(()) } else { Err(Fault::WrongState.error(format!(
+                    "matrix {k} has another local-to-global map than when it was added, expected the same: \
+                     call FetiFetiReset and add all again"
+                ))) })?;
                 Ok(k_now)
             };
             entries.push(a.as_ref().map(part).transpose()?);

@@ -97,9 +97,10 @@ impl Search<'_> {
                     tolerance: relative((goal[0] * before).max(goal[1])),
                     run: Run {
                         iterations,
-                        status: Status::Krylov(match found.reached {
-                            true => ConvergedReason::rtol(),
-                            false => ConvergedReason::its(),
+                        status: Status::Krylov(if found.reached {
+                            ConvergedReason::rtol()
+                        } else {
+                            ConvergedReason::its()
                         }),
                         residuals: vec![first, after],
                         estimate: None,

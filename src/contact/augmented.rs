@@ -60,9 +60,12 @@ impl<'a> Augmented<'a> {
             *d = 1.0 / c;
         }
         let scale: Vec<f64> = (0..diagonal.len())
-            .map(|i| match stiffness.jump.is_candidate(i) {
-                true => diagonal[i].sqrt(),
-                false => 0.0,
+            .map(|i| {
+                if stiffness.jump.is_candidate(i) {
+                    diagonal[i].sqrt()
+                } else {
+                    0.0
+                }
             })
             .collect();
         let mut g = natural.all.clone();

@@ -65,9 +65,12 @@ pub struct Penalty<'a> {
 impl Penalty<'_> {
     /// s at a point; zero for rows that do not count.
     pub fn pull(&self, at: &Point) -> Vec<f64> {
-        let of = |i: usize| match self.counts[i] {
-            true => self.multiplier[i] + at.gap[i] / self.compliance[i],
-            false => 0.0,
+        let of = |i: usize| {
+            if self.counts[i] {
+                self.multiplier[i] + at.gap[i] / self.compliance[i]
+            } else {
+                0.0
+            }
         };
         (0..at.gap.len()).map(of).collect()
     }
@@ -166,9 +169,10 @@ impl Penalty<'_> {
                 high = t;
             }
             let newton = t - slope / curvature;
-            let next = match low < newton && newton < high {
-                true => newton,
-                false => 0.5 * (low + high),
+            let next = if low < newton && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
             };
             if (next - t).abs() <= 1e-12 * next {
                 break;

@@ -30,9 +30,12 @@ impl Search<'_> {
         let jump = &dual.stiffness.jump;
         let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());
         let open = open.filter(|(i, _)| self.counts[*i]);
-        let open = open.fold(0.0f64, |a, (i, gap)| match jump.active[i] {
-            true => a.max(gap.abs()),
-            false => a.max(*gap),
+        let open = open.fold(0.0f64, |a, (i, gap)| {
+            if jump.active[i] {
+                a.max(gap.abs())
+            } else {
+                a.max(*gap)
+            }
         });
         Ok(highest(comm, open) <= rtol * self.length)
     }

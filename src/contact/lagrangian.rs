@@ -115,9 +115,10 @@ pub(super) fn solve(
         // Where φ falls no more, rounding may have ended the last minimisation.
         let ended = minimal || (came == Came::Nowhere && progress.wrong() == 0);
         if ended && search.is_solution(course.rtol)? {
-            let status = match status.converged() {
-                true => status,
-                false => Status::Rounding,
+            let status = if status.converged() {
+                status
+            } else {
+                Status::Rounding
             };
             return course.finish(search, status);
         }
@@ -197,9 +198,10 @@ impl<'a> Course<'a, '_> {
         let trial = State {
             safeguarded: false,
             progress: Progress::default(),
-            accuracy: match minimal {
-                true => self.digits * state.accuracy,
-                false => state.accuracy,
+            accuracy: if minimal {
+                self.digits * state.accuracy
+            } else {
+                state.accuracy
             },
             ..state.clone()
         };
@@ -233,9 +235,10 @@ impl<'a> Course<'a, '_> {
             if verdict == Verdict::Solved || !status.converged() {
                 return Ok(Some((run, status)));
             }
-            let patience = match run.state.progress.wrong() > CLOSE {
-                true => PATIENCE,
-                false => 2 * PATIENCE,
+            let patience = if run.state.progress.wrong() > CLOSE {
+                PATIENCE
+            } else {
+                2 * PATIENCE
             };
             let lost = run.state.progress.wrong() > search.few;
             if lost || run.state.safeguarded || run.state.progress.stalled(patience) {

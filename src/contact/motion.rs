@@ -41,9 +41,10 @@ pub const BALANCE: f64 = 1e-9;
 /// # Errors
 /// As [`check`].
 pub fn check_few(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
-    match dual.natural.r <= FEW {
-        true => check(problem, dual, load, &[]),
-        false => Ok(()),
+    if dual.natural.r <= FEW {
+        check(problem, dual, load, &[])
+    } else {
+        Ok(())
     }
 }
 
@@ -58,9 +59,10 @@ pub fn check_many(
     load: &KernelLoad,
     lambda: &[f64],
 ) -> Result<()> {
-    match dual.natural.r > FEW {
-        true => check(problem, dual, load, lambda),
-        false => Ok(()),
+    if dual.natural.r > FEW {
+        check(problem, dual, load, lambda)
+    } else {
+        Ok(())
     }
 }
 

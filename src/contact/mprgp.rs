@@ -64,9 +64,12 @@ impl Setting<'_> {
         let free = self.free(x);
         let part = |keep: &dyn Fn(usize) -> f64| (0..g.len()).map(keep).collect::<Vec<f64>>();
         let phi = part(&|i| if free[i] { g[i] } else { 0.0 });
-        let beta = part(&|i| match free[i] || self.fixed[i] {
-            true => 0.0,
-            false => g[i].min(0.0),
+        let beta = part(&|i| {
+            if free[i] || self.fixed[i] {
+                0.0
+            } else {
+                g[i].min(0.0)
+            }
         });
         (phi, beta)
     }

@@ -200,10 +200,7 @@ impl<'a> Search<'a> {
     fn set(&self, s: &[f64]) -> Vec<bool> {
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
-        let on = |i: usize| match self.counts[i] {
-            true => s[i] > 0.0,
-            false => jump.initial[i],
-        };
+        let on = |i: usize| (self.counts[i] && s[i] > 0.0) || (!self.counts[i] && jump.initial[i]);
         (0..s.len()).map(on).collect()
     }
 
@@ -284,9 +281,10 @@ impl<'a> Search<'a> {
             left,
             iterations: run.iterations,
             estimate: run.estimate,
-            exact: match method.settings.spectrum {
-                true => method.spectrum()?,
-                false => None,
+            exact: if method.settings.spectrum {
+                method.spectrum()?
+            } else {
+                None
             },
             residual: arrival.residual,
             tolerance: arrival.tolerance,

@@ -317,9 +317,10 @@ impl<'a> Springs<'a> {
             if s.abs() <= 1e-12 * start {
                 break;
             }
-            match s < 0.0 {
-                true => low = t,
-                false => high = t,
+            if s < 0.0 {
+                low = t
+            } else {
+                high = t
             }
             let newton = t - s / curvature;
             t = match (low < newton && newton < high, high.is_finite()) {

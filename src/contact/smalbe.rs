@@ -82,9 +82,10 @@ pub(super) fn solve(
             0 => unchanged + 1,
             _ => 0,
         };
-        match unchanged > 0 && step.residual > 0.5 * before {
-            true => idle += 1,
-            false => (before, idle) = (step.residual, 0),
+        if unchanged > 0 && step.residual > 0.5 * before {
+            idle += 1
+        } else {
+            (before, idle) = (step.residual, 0);
         }
         observe(&step, &state)?;
         steps.push(step);
@@ -179,9 +180,12 @@ impl<'a> Search<'a> {
         let mut b = a.unscaled(&r); /*                    b = S(d − F λ̃)  */
         a.balance.project(comm, &mut b);
         let lower: Vec<f64> = (0..jump.n_owned)
-            .map(|i| match jump.inequality[i] {
-                true => -shift[i],
-                false => f64::NEG_INFINITY,
+            .map(|i| {
+                if jump.inequality[i] {
+                    -shift[i]
+                } else {
+                    f64::NEG_INFINITY
+                }
             })
             .collect();
         // Without bounds λ̃ may be the solution: b is rounding, and what the bounds add to it has the problem's size.
@@ -194,14 +198,18 @@ impl<'a> Search<'a> {
         let warm = state.lambda.iter().any(|l| *l != 0.0);
         let warm = any(comm, warm);
         let start = a.scaled(&state.lambda);
-        let x = (0..jump.n_owned).map(|i| match warm {
-            true => (start[i] - shift[i]).max(lower[i]),
-            false => first[i],
+        let x = (0..jump.n_owned).map(|i| {
+            if warm {
+                (start[i] - shift[i]).max(lower[i])
+            } else {
+                first[i]
+            }
         });
         let known = a.balance.known();
-        let mu = match state.mu.is_empty() {
-            true => vec![0.0; known.n()],
-            false => known.part_of(&state.mu),
+        let mu = if state.mu.is_empty() {
+            vec![0.0; known.n()]
+        } else {
+            known.part_of(&state.mu)
         };
         Ok(Search {
             x: x.collect(),
@@ -226,9 +234,12 @@ impl<'a> Search<'a> {
             *x = (scaled[i] - self.shift[i]).max(self.lower[i]);
         }
         let w: Vec<f64> = (0..self.x.len())
-            .map(|i| match self.fixed[i] || run.held[i] {
-                true => 0.0,
-                false => -run.gaps[i] * self.a.scale[i],
+            .map(|i| {
+                if self.fixed[i] || run.held[i] {
+                    0.0
+                } else {
+                    -run.gaps[i] * self.a.scale[i]
+                }
             })
             .collect();
         self.mu = self.a.balance.forces(comm, &w);

@@ -219,12 +219,11 @@ fn sound(k: &Csr, entries: &[f64]) -> Option<Vec<f64>> {
                 }
                 next[j] += 1;
             }
-            let other = match k.col[next[j]] as usize == i {
-                true => {
-                    next[j] += 1;
-                    entries[next[j] - 1]
-                }
-                false => 0.0,
+            let other = if k.col[next[j]] as usize == i {
+                next[j] += 1;
+                entries[next[j] - 1]
+            } else {
+                0.0
             };
             if !small(i, j, entries[e] - other) {
                 return None;

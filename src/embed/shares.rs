@@ -40,9 +40,10 @@ impl Fixed {
     /// Takes the diagonal entry, and this rank's part of it.
     fn weigh(&mut self, mine: f64, diagonal: f64) {
         self.diagonal = diagonal;
-        self.weight = match diagonal == 0.0 {
-            true => self.equal,
-            false => mine / diagonal,
+        self.weight = if diagonal == 0.0 {
+            self.equal
+        } else {
+            mine / diagonal
         };
     }
 }

@@ -68,9 +68,10 @@ pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
         .flat_map(|w| w.chunks_exact(2))
         .map(|pair| {
             let diagonal = f64::from_bits(pair[1]);
-            let state = match pair[0] & 1 == 1 {
-                true => State::Free(diagonal),
-                false => State::Fixed(diagonal),
+            let state = if pair[0] & 1 == 1 {
+                State::Free(diagonal)
+            } else {
+                State::Fixed(diagonal)
             };
             ((pair[0] >> 1) as u32, state)
         })

@@ -66,9 +66,10 @@ impl FetiFeti {
         let go_to = |rtol: f64| self.ksp().set_tolerances(Some(rtol), None, None, None);
         go_to(rtol)?;
         let equations = self.facts().inequalities == 0;
-        let (mut found, mut steps) = match equations {
-            true => (method.solve(None)?, Vec::new()),
-            false => contact::solve(method, &settings.contact, start, observe)?,
+        let (mut found, mut steps) = if equations {
+            (method.solve(None)?, Vec::new())
+        } else {
+            contact::solve(method, &settings.contact, start, observe)?
         };
         let verdict = loop {
             let verdict = method.bounded(&found)?;
@@ -78,9 +79,10 @@ impl FetiFeti {
                 break verdict;
             }
             let factor = AIM * allowed / error;
-            let factor = match error.is_finite() && factor > 0.0 {
-                true => factor.clamp(FACTORS[0], FACTORS[1]),
-                false => FACTORS[0],
+            let factor = if error.is_finite() && factor > 0.0 {
+                factor.clamp(FACTORS[0], FACTORS[1])
+            } else {
+                FACTORS[0]
             };
             rtol = (factor * rtol).max(last);
             go_to(rtol)?;

@@ -37,9 +37,10 @@ fn all_agree(
             }
         }
     }
-    match wrong.is_empty() {
-        true => Ok(fates),
-        false => Err(format!("{} answers:\n{}", wrong.len(), wrong.join("\n"))),
+    if wrong.is_empty() {
+        Ok(fates)
+    } else {
+        Err(format!("{} answers:\n{}", wrong.len(), wrong.join("\n")))
     }
 }
 

@@ -73,9 +73,10 @@ fn a_loop_that_is_ended_leaves_the_operators_as_they_were() {
                 let mut steps = 0;
                 let ended = solver.solve_from(None, &mut |_, _| {
                     steps += 1;
-                    match steps == last {
-                        true => Err(Error::input("that is enough")),
-                        false => Ok(()),
+                    if steps == last {
+                        Err(Error::input("that is enough"))
+                    } else {
+                        Ok(())
                     }
                 });
                 let ended = ended.expect_err("the callback ends it");

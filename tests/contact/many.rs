@@ -123,9 +123,10 @@ fn copies_do_not_matter(session: &Session) -> Result<()> {
     let away = away.fold(0.0, f64::max) / energies[0].abs();
     let refused = solve(size + 1).map(drop).unwrap_err().to_string();
     let why = format!("expected a number that divides {size}");
-    match away < 1e-10 && refused.contains(&why) {
-        true => Ok(()),
-        false => Err(Error::input(format!("{energies:?}, {refused}"))),
+    if away < 1e-10 && refused.contains(&why) {
+        Ok(())
+    } else {
+        Err(Error::input(format!("{energies:?}, {refused}")))
     }
 }
 
@@ -144,9 +145,10 @@ fn rigid_bodies_save_steps(session: &Session) -> Result<()> {
     };
     let (all, rigid) = (solve(ContactStart::All)?, solve(ContactStart::Rigid)?);
     let apart = (all.2 - rigid.2).abs() / all.2.abs();
-    match all.0 && rigid.0 && rigid.1 < all.1 && apart < 1e-8 {
-        true => Ok(()),
-        false => Err(Error::input(format!("all {all:?}, rigid {rigid:?}"))),
+    if all.0 && rigid.0 && rigid.1 < all.1 && apart < 1e-8 {
+        Ok(())
+    } else {
+        Err(Error::input(format!("all {all:?}, rigid {rigid:?}")))
     }
 }
 
@@ -182,11 +184,12 @@ fn deflation_is_declined(session: &Session) -> Result<()> {
         .is_some_and(|(seen, from)| 15.0 < seen && seen < from);
     let apart = (plain.1 - deflated.1).abs() / plain.1.abs();
     let ended = plain.0 && deflated.0;
-    match ended && left && plain.2 == 0 && deflated.2 > 0 && deflated.3.is_none() && apart < 1e-8 {
-        true => Ok(()),
-        false => Err(Error::input(format!(
+    if ended && left && plain.2 == 0 && deflated.2 > 0 && deflated.3.is_none() && apart < 1e-8 {
+        Ok(())
+    } else {
+        Err(Error::input(format!(
             "left {plain:?}, deflated {deflated:?}"
-        ))),
+        )))
     }
 }
 

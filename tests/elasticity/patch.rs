@@ -92,9 +92,10 @@ fn pressed(dim: usize, form: &str, interface: &str) -> String {
     let (p, e, nu) = (0.3, 2.0, 0.3);
     // Plane strain has the moduli of the plane; plane stress and solids Young's own.
     let strain = dim == 2 && !form.contains("stress");
-    let (along, across) = match strain {
-        true => (-p * (1.0 - nu * nu) / e, p * nu * (1.0 + nu) / e),
-        false => (-p / e, p * nu / e),
+    let (along, across) = if strain {
+        (-p * (1.0 - nu * nu) / e, p * nu * (1.0 + nu) / e)
+    } else {
+        (-p / e, p * nu / e)
     };
     let exact = [
         format!("\"{across}*x\""),
@@ -143,15 +144,19 @@ fn uniform_pressure_is_exact_across_contact() {
 fn manufactured(dim: usize, form: &str, n: usize) -> String {
     let (nu, e) = (0.3, 1.0);
     let mu = e / (2.0 * (1.0 + nu));
-    let lambda = match form.contains("stress") {
-        true => e * nu / (1.0 - nu * nu),
-        false => e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+    let lambda = if form.contains("stress") {
+        e * nu / (1.0 - nu * nu)
+    } else {
+        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
     };
     let axes = &["x", "y", "z"][..dim];
     let product = |cosines: &[usize]| {
-        let factor = |d: usize| match cosines.contains(&d) {
-            true => format!("cos(pi*{})", axes[d]),
-            false => format!("sin(pi*{})", axes[d]),
+        let factor = |d: usize| {
+            if cosines.contains(&d) {
+                format!("cos(pi*{})", axes[d])
+            } else {
+                format!("sin(pi*{})", axes[d])
+            }
         };
         (0..dim).map(factor).collect::<Vec<_>>().join("*")
     };

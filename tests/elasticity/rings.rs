@@ -79,16 +79,17 @@ fn sphere(n: usize, cut: bool) -> String {
         |from: f64, size: f64| format!("origin = [{from}, 0]\nsize = [{size}, \"pi/2\"]\n{shape}");
     let half = "dirichlet = { bottom = { y = 0 } }";
     let pressed = format!("pressure = {{ left = 7 }}\n{half}");
-    match cut {
-        false => format!(
-            "{RING}{exact}\n{}",
-            body("sphere", &at(1.0, 1.0), n, &pressed)
-        ),
-        true => format!(
+    if cut {
+        format!(
             "{RING}{exact}\n{}{}[[contact]]\nbodies = \"all\"\n",
             body("inner", &at(1.0, 0.5), n, &pressed),
             body("outer", &at(1.5, 0.5), n, half)
-        ),
+        )
+    } else {
+        format!(
+            "{RING}{exact}\n{}",
+            body("sphere", &at(1.0, 1.0), n, &pressed)
+        )
     }
 }
 

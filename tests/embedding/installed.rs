@@ -56,9 +56,10 @@ pub fn files(below: &Path) -> Vec<PathBuf> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(below).expect("a directory") {
         let path = entry.expect("an entry").path();
-        match path.is_dir() && !path.is_symlink() {
-            true => all.extend(files(&path)),
-            false => all.push(path),
+        if path.is_dir() && !path.is_symlink() {
+            all.extend(files(&path))
+        } else {
+            all.push(path)
         }
     }
     all

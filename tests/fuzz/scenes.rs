@@ -128,20 +128,20 @@ fn material(rng: &mut Rng, kind: &Kind, grid: bool) -> String {
         2 => format!("\"{}*(1 + 0.5*sin(4*x)*cos(3*y))\"", size(rng)),
         _ => format!("{}", size(rng)),
     };
-    match kind.elastic {
-        true => {
-            let poisson = *rng.pick(&["0.3", "0.3", "0", "0.45", "0.49"]);
-            format!("young = {value}\npoisson = {poisson}\n")
-        }
-        false => format!("rho = {value}\n"),
+    if kind.elastic {
+        let poisson = *rng.pick(&["0.3", "0.3", "0", "0.45", "0.49"]);
+        format!("young = {value}\npoisson = {poisson}\n")
+    } else {
+        format!("rho = {value}\n")
     }
 }
 
 /// A load, mostly downwards.
 fn load(rng: &mut Rng, kind: &Kind) -> String {
-    let down = match kind.pressed {
-        true => -number(rng, 0.1, 2.0),
-        false => number(rng, -1.0, 1.0),
+    let down = if kind.pressed {
+        -number(rng, 0.1, 2.0)
+    } else {
+        number(rng, -1.0, 1.0)
     };
     let swing = number(rng, 0.0, 2.0);
     let down = match rng.below(4) {
@@ -152,9 +152,10 @@ fn load(rng: &mut Rng, kind: &Kind) -> String {
     if !kind.elastic {
         return format!("load = {down}\n");
     }
-    let aside = match rng.one_in(3) {
-        true => format!("{}", number(rng, -0.3, 0.3)),
-        false => "0".into(),
+    let aside = if rng.one_in(3) {
+        format!("{}", number(rng, -0.3, 0.3))
+    } else {
+        "0".into()
     };
     let mut all = vec![aside; kind.dim - 1];
     all.push(down);
@@ -237,17 +238,16 @@ fn obstacle(rng: &mut Rng, kind: &Kind, body: &str, low: f64) -> String {
             }
         }))
     };
-    let shape = match rng.one_in(3) {
-        true => {
-            let centre = format!("{}", at - 5.0);
-            let round = if kind.dim == 2 { "cylinder" } else { "sphere" };
-            format!("{round} = {{ centre = {}, radius = 5 }}", axis(&centre))
-        }
-        false => format!(
+    let shape = if rng.one_in(3) {
+        let centre = format!("{}", at - 5.0);
+        let round = if kind.dim == 2 { "cylinder" } else { "sphere" };
+        format!("{round} = {{ centre = {}, radius = 5 }}", axis(&centre))
+    } else {
+        format!(
             "plane = {{ point = {}, normal = {} }}",
             axis(&format!("{at}")),
             axis("1")
-        ),
+        )
     };
     format!("[[obstacle]]\nbody = \"{body}\"\nside = \"{side}\"\n{shape}\n")
 }
@@ -302,9 +302,10 @@ fn grid(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
             pair.reverse();
         }
         let [a, b] = pair;
-        let (joint, gap) = match rng.one_in(3) {
-            true => ("tie", String::new()),
-            false => ("contact", gap(rng)),
+        let (joint, gap) = if rng.one_in(3) {
+            ("tie", String::new())
+        } else {
+            ("contact", gap(rng))
         };
         let _ = write!(
             out,
@@ -360,9 +361,10 @@ fn stack(rng: &mut Rng, kind: &Kind, out: &mut String) -> Option<String> {
     }
     for k in 1..n {
         let (a, b) = (k - 1, k);
-        let carrier = match rng.one_in(3) {
-            true => format!("multipliers = \"s{b}\"\n"),
-            false => String::new(),
+        let carrier = if rng.one_in(3) {
+            format!("multipliers = \"s{b}\"\n")
+        } else {
+            String::new()
         };
         let _ = match rng.below(5) {
             0 => write!(out, "[[tie]]\nbodies = [\"s{a}\", \"s{b}\"]\n{carrier}"),

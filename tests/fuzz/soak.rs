@@ -99,9 +99,10 @@ pub fn fate(session: &Session, seed: u64, dir: &Path) -> Fate {
 fn refused(said: &str, path: &Path) -> Fate {
     let file = path.display().to_string();
     let places = [&file[..], "body", "bodies", "[[", "-fetifeti_"];
-    match !said.contains('\n') && places.iter().any(|p| said.contains(p)) {
-        true => Fate::Refused(said.into()),
-        false => Fate::Wrong(format!("a sentence without a place: {said}")),
+    if !said.contains('\n') && places.iter().any(|p| said.contains(p)) {
+        Fate::Refused(said.into())
+    } else {
+        Fate::Wrong(format!("a sentence without a place: {said}"))
     }
 }
 
@@ -135,11 +136,12 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
             let of = verdict.solutions[0];
             let error = of.error.unwrap_or(0.0);
             let violation = of.feasibility.unwrap_or(0.0);
-            Ok(match error <= ERROR && violation <= VIOLATION {
-                true => Fate::Right(error),
-                false => Fate::Wrong(format!(
+            Ok(if error <= ERROR && violation <= VIOLATION {
+                Fate::Right(error)
+            } else {
+                Fate::Wrong(format!(
                     "an error of {error:.1e}, a violation of {violation:.1e}"
-                )),
+                ))
             })
         }
         Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {

@@ -105,9 +105,10 @@ fn same(a: &Found, b: &Found, tolerance: f64, what: &str) {
         b.iterations
     );
     // κ is read off CG, which knows the ends of the spectrum better after an iteration more.
-    let known = match a.iterations == b.iterations {
-        true => 1e-4,
-        false => 1e-3,
+    let known = if a.iterations == b.iterations {
+        1e-4
+    } else {
+        1e-3
     };
     assert!(
         near(a.kappa, b.kappa, known),

@@ -154,9 +154,10 @@ fn what_does_not_fit_gets_one_sentence() {
     // The edge from node 1 to 2 is an arc of 60 degrees; on its other side two edges have their ends on the arc.
     for (more, fits) in [(0.0, false), (0.05, true)] {
         let model = Model::new("mesh_arc", &arcs(more));
-        match fits {
-            false => model.refuses(one, "hangs on a side of cell 1"),
-            true => drop(model.scene(one)),
+        if fits {
+            drop(model.scene(one))
+        } else {
+            model.refuses(one, "hangs on a side of cell 1")
         }
     }
     // Two cells above the edge from node 2 to 3, two tetrahedra above one triangle.

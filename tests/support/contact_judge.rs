@@ -57,9 +57,12 @@ pub fn answer(
     let (rank, size) = (session.rank(), session.size());
     // Subdomains are distributed in contiguous runs, or in turn.
     let share = fetifeti::share(session, scene.n_subdomains());
-    let mine = |s: usize| match cards {
-        false => share.contains(&s),
-        true => s % size == rank,
+    let mine = |s: usize| {
+        if cards {
+            s % size == rank
+        } else {
+            share.contains(&s)
+        }
     };
     let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(how.into()))?;
     let solution = solver.solve()?;

@@ -186,9 +186,10 @@ impl Schedule<'_> {
                 self.children[f]
                     .iter()
                     .fold(self.ready[rank as usize], |at, &c| {
-                        let way = match self.rank[c] == rank {
-                            true => 0.0,
-                            false => way_of(&self.fronts[c]),
+                        let way = if self.rank[c] == rank {
+                            0.0
+                        } else {
+                            way_of(&self.fronts[c])
                         };
                         at.max(self.done[c] + way)
                     })

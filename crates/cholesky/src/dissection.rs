@@ -77,9 +77,10 @@ pub fn part_of_dissection(
         let part = lower.len() as f64 / (lower.len() + upper.len()).max(1) as f64;
         let of_lower = (part * among.len() as f64).round() as usize;
         let middle = among.start + of_lower.clamp(1, among.len() - 1);
-        (set, among) = match rank < middle {
-            true => (lower, among.start..middle),
-            false => (upper, middle..among.end),
+        (set, among) = if rank < middle {
+            (lower, among.start..middle)
+        } else {
+            (upper, middle..among.end)
         };
     }
     work.dissect(set);
@@ -144,9 +145,10 @@ impl<'a> Cutting<'a> {
             return Err(set);
         }
         let by_coordinate = self.cut_by_coordinate(&set);
-        let by_distance = match self.sizes.is_none() && by_coordinate.is_some() {
-            true => None,
-            false => self.cut_by_distance(&set),
+        let by_distance = if self.sizes.is_none() && by_coordinate.is_some() {
+            None
+        } else {
+            self.cut_by_distance(&set)
         };
         let cuts = [by_distance, by_coordinate].into_iter().flatten();
         let cuts: Vec<Halves> = cuts.map(|(l, u)| self.separate(l, u)).collect();

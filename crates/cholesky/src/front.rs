@@ -106,9 +106,12 @@ fn factor_by_groups(
     for start in (0..width).step_by(TOGETHER) {
         let end = (start + TOGETHER).min(width);
         // The columns of the group, from its first row down.
-        let mut group = Dense::from_fn(size - start, end - start, |i, j| match i < j {
-            true => 0.0,
-            false => panel.get(start + i, start + j),
+        let mut group = Dense::from_fn(size - start, end - start, |i, j| {
+            if i < j {
+                0.0
+            } else {
+                panel.get(start + i, start + j)
+            }
         });
         let begin = group.clone();
         let mut held: Vec<usize> = Vec::new();

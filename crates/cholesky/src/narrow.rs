@@ -37,9 +37,10 @@ impl Team {
             let front = &old.fronts[f];
             let is_own = own.binary_search(&f).is_ok();
             let gives = is_own || children.binary_search(&f).is_ok();
-            let (start, width) = match is_own {
-                true => (row(front.start as u32) as usize, front.width()),
-                false => (0, 0),
+            let (start, width) = if is_own {
+                (row(front.start as u32) as usize, front.width())
+            } else {
+                (0, 0)
             };
             let list = |list: &[u32]| if gives { list.to_vec() } else { Vec::new() };
             Front {

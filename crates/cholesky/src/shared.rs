@@ -122,9 +122,12 @@ impl SharedCholesky {
                 });
                 if let Some(to) = run.parent {
                     // What is left to the rows of others goes with the message; they are summed on the way.
-                    let mut left = |p: usize| match team.has_row(p) {
-                        true => 0.0,
-                        false => std::mem::take(&mut y[p]),
+                    let mut left = |p: usize| {
+                        if team.has_row(p) {
+                            0.0
+                        } else {
+                            std::mem::take(&mut y[p])
+                        }
                     };
                     post.send(to, below(team.last(run)).map(&mut left).collect());
                 }

@@ -107,9 +107,10 @@ pub(super) fn bodies(
         let to = &mut sums[b];
         touched.push(b);
         let arm = minus(body.spec.position(node), body.ball().0);
-        match row.support {
-            true => to.reaction.add(arm, force),
-            false => to.contact.add(arm, force),
+        if row.support {
+            to.reaction.add(arm, force)
+        } else {
+            to.contact.add(arm, force)
         }
         // Where u is given the elements bear this force, too.
         let c = body.components;
@@ -292,9 +293,10 @@ fn balance(
     let of_moments = turns.map_or(0.0, |rest| {
         beyond(rest, (lever, size * radius), sums.terms * radius, turned)
     });
-    let beyond = match (of_forces + of_moments).is_nan() {
-        true => f64::INFINITY,
-        false => of_forces.max(of_moments),
+    let beyond = if (of_forces + of_moments).is_nan() {
+        f64::INFINITY
+    } else {
+        of_forces.max(of_moments)
     };
     // What the iteration leaves is an error of u, and so of the reactions: multipliers balance the loads.
     let mut reaction = sums.reaction;

@@ -68,9 +68,10 @@ impl Coefficient {
 /// A number with four digits: 0.0123, 3000, 1e6.
 fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    match (1e-4..1e5).contains(&rounded.abs()) {
-        true => format!("{rounded}"),
-        false => format!("{rounded:e}"),
+    if (1e-4..1e5).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
     }
 }
 

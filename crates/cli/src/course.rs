@@ -131,9 +131,12 @@ pub(super) fn follow(
             checkpoints.save(session, step, || records.followed_by(&outer), state)?;
             signals::heed(session)
         });
-        let mut solution = solved.map_err(|e| match signals::is_end(&e) {
-            true => checkpoints.ended(e, (step, n), outer.len()),
-            false => renewed.at_step(step, e),
+        let mut solution = solved.map_err(|e| {
+            if signals::is_end(&e) {
+                checkpoints.ended(e, (step, n), outer.len())
+            } else {
+                renewed.at_step(step, e)
+            }
         })?;
         progress.finish();
         let mine = solver.problem().local.iter().map(|s| s.index);

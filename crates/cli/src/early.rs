@@ -25,9 +25,10 @@ impl Early {
     pub fn new(session: &Session, scene: &Scene, solver: &FetiFeti) -> Result<Early> {
         let clock = Instant::now();
         let settings = &solver.settings().method;
-        let estimator = match settings.certify || settings.stops_early {
-            true => Some(Estimator::new(session, scene, solver)?),
-            false => None,
+        let estimator = if settings.certify || settings.stops_early {
+            Some(Estimator::new(session, scene, solver)?)
+        } else {
+            None
         };
         Ok(Early {
             estimator,

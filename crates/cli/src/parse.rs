@@ -83,9 +83,10 @@ fn check_options_files(petsc: &[String]) -> Result<()> {
         if endless || data.len() > MOST {
             return Err(Error::input(format!(
                 "-options_file is {file}, {}, where a file with options was expected",
-                match endless {
-                    true => "a device".into(),
-                    false => format!("which has {} bytes", data.len()),
+                if endless {
+                    "a device".into()
+                } else {
+                    format!("which has {} bytes", data.len())
                 }
             )));
         }

@@ -50,9 +50,10 @@ pub(super) fn write(
     let von_mises: Vec<f64> = all.von_mises();
     let coefficient = ["coefficient ρ", "Young's modulus E"][usize::from(elastic)];
     let coefficient = Field::coefficient(coefficient, &all.rho);
-    let first = match elastic {
-        true => Field::nodal("displacement |u|", &u),
-        false => Field::nodal("solution u", &u),
+    let first = if elastic {
+        Field::nodal("displacement |u|", &u)
+    } else {
+        Field::nodal("solution u", &u)
     };
     let mut fields = vec![first];
     if elastic {
@@ -64,9 +65,10 @@ pub(super) fn write(
     if (!elastic && scene.dim() == 2) || varies_inside_bodies(&all.rho, &all.body) {
         fields.push(coefficient);
     }
-    let title = match elastic {
-        true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
-        false => scene.title.clone(),
+    let title = if elastic {
+        format!("{} (displacements {} ×)", scene.title, number(moved.factor))
+    } else {
+        scene.title.clone()
     };
     let beside = Beside {
         obstacles: &obstacles(scene, all, rows),
@@ -218,9 +220,10 @@ impl Moved {
         let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
         let most = apart(scene, all, rows, OVERLAP * size);
         // Sides touch where renewed contacts pair them, that is, in their own positions.
-        let factor = match scene.is_renewed() {
-            true => 1.0,
-            false => factor(largest, size, from, most),
+        let factor = if scene.is_renewed() {
+            1.0
+        } else {
+            factor(largest, size, from, most)
         };
         let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);
         Moved {
@@ -241,9 +244,10 @@ fn apart(scene: &Scene, all: &Gathered, rows: &[SolvedRow], overlap: f64) -> f64
         };
         let closing = along(0) - along(1);
         let initial = row.gap + closing;
-        match closing > 0.0 {
-            true => (initial.max(0.0) + overlap) / closing,
-            false => f64::INFINITY,
+        if closing > 0.0 {
+            (initial.max(0.0) + overlap) / closing
+        } else {
+            f64::INFINITY
         }
     });
     limit.fold(f64::INFINITY, f64::min).max(1.0)

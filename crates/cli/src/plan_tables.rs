@@ -42,9 +42,10 @@ fn more(count: usize, what: &str) -> String {
 
 /// A number in four digits.
 fn short(x: f64) -> String {
-    match x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
-        true => format!("{}", format!("{x:.3e}").parse::<f64>().unwrap_or(x)),
-        false => format!("{x:.3e}"),
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        format!("{}", format!("{x:.3e}").parse::<f64>().unwrap_or(x))
+    } else {
+        format!("{x:.3e}")
     }
 }
 
@@ -96,17 +97,19 @@ pub(super) fn interfaces(scene: &Scene, plan: &Plan) -> String {
 
 /// What the size of a side is called.
 fn size(scene: &Scene) -> &'static str {
-    match scene.dim() == 2 && !scene.form.is_axial() {
-        true => "length",
-        false => "area",
+    if scene.dim() == 2 && !scene.form.is_axial() {
+        "length"
+    } else {
+        "area"
     }
 }
 
 /// The smallest and the largest gap.
 fn range([low, high]: [f64; 2]) -> String {
-    match low == high {
-        true => short(low),
-        false => format!("{} to {}", short(low), short(high)),
+    if low == high {
+        short(low)
+    } else {
+        format!("{} to {}", short(low), short(high))
     }
 }
 

@@ -188,9 +188,10 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
         return Ok(None);
     };
     // A spectrum of many decades may be beyond the eigensolver.
-    let exact_without = match solver.settings().method.spectrum {
-        true => solver.plain_spectrum().ok().flatten(),
-        false => None,
+    let exact_without = if solver.settings().method.spectrum {
+        solver.plain_spectrum().ok().flatten()
+    } else {
+        None
     };
     let names = &solver.problem().body_names;
     Ok(Some(Deflation {

@@ -160,9 +160,10 @@ type Place = (RowSource, BodyNode, usize);
 /// The places of a row: first that of the node that carries its multiplier. Interfaces are named by the other body.
 fn places(scene: &Scene, label: &RowLabel, inequality: bool) -> impl Iterator<Item = Place> {
     let n = label.normal.map(f64::abs);
-    let direction = match inequality {
-        true => 3,
-        false => (0..3).max_by(|&a, &b| n[a].total_cmp(&n[b])).unwrap_or(0),
+    let direction = if inequality {
+        3
+    } else {
+        (0..3).max_by(|&a, &b| n[a].total_cmp(&n[b])).unwrap_or(0)
     };
     let [first, second] = match label.source {
         RowSource::Interface(k) => {

@@ -24,9 +24,10 @@ fn line(search: &Search) -> String {
     };
     // Residuals fall by about the same factor in each restart: thousandths of the way in powers of ten.
     let way = search.residual.ln() / search.tolerance.ln();
-    let done = match way.is_finite() {
-        true => (1000.0 * way).max(0.0) as usize,
-        false => 0,
+    let done = if way.is_finite() {
+        (1000.0 * way).max(0.0) as usize
+    } else {
+        0
     };
     let left = left(search.elapsed, done, 1000).map_or(String::new(), |left| format!(", {left}"));
     format!(

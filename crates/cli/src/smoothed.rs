@@ -71,9 +71,10 @@ pub(super) fn smoothed(scene: &Scene, rows: &[SolvedRow]) -> (Vec<f64>, Vec<Osci
         found.push(Oscillation {
             interface,
             finer,
-            size: match largest > 0.0 {
-                true => (square / area).sqrt() / largest,
-                false => 0.0,
+            size: if largest > 0.0 {
+                (square / area).sqrt() / largest
+            } else {
+                0.0
             },
         });
     }

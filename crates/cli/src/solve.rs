@@ -145,9 +145,10 @@ fn solve(
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
     give_back(); // lists of the set-up
-    let place = match args.pieces {
-        true => Place::EachRank,
-        false => Place::FirstRank,
+    let place = if args.pieces {
+        Place::EachRank
+    } else {
+        Place::FirstRank
     };
     let written = (checkpoints, &events);
     let course = follow(session, scene, &mut solver, destination, place, written)?;

@@ -69,17 +69,19 @@ impl Form {
 
     /// What a piece of a plane cell or side at this point is multiplied by: the way around the axis in rings, else 1.
     pub fn around(&self, point: [f64; 3]) -> f64 {
-        match self.is_axial() {
-            true => TAU * point[0],
-            false => 1.0,
+        if self.is_axial() {
+            TAU * point[0]
+        } else {
+            1.0
         }
     }
 
     /// Which of the [`rigid_motions`](super::cell::rigid_motions) take no energy; rings have the one along the axis.
     pub fn rigid(&self, dim: usize) -> Range<usize> {
-        match self.is_axial() {
-            true => 1..2,
-            false => 0..rigid_count(dim),
+        if self.is_axial() {
+            1..2
+        } else {
+            0..rigid_count(dim)
         }
     }
 

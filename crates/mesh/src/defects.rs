@@ -178,9 +178,10 @@ fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
             // A second node at the place of a node of the side does not hang.
             let of_side = |&l: &u32| l == node || norm(minus(mesh.points[l as usize], x)) <= near;
             !joined.contains(&node)
-                && match straight {
-                    true => on(&corners, x, near),
-                    false => on_edge(mesh, &nodes, &corners, x, near),
+                && if straight {
+                    on(&corners, x, near)
+                } else {
+                    on_edge(mesh, &nodes, &corners, x, near)
                 }
                 && !nodes.iter().any(of_side)
         };

@@ -55,9 +55,10 @@ fn listed(set: &[(String, String)], work: impl FnOnce() -> Result<()>) -> Result
     // SAFETY: the text was closed with a zero byte, is ours, and is freed once.
     let text = unsafe {
         let kept = petsc_sys::ff_print_kept();
-        let text = match kept.is_null() {
-            true => String::new(),
-            false => rust_string(kept),
+        let text = if kept.is_null() {
+            String::new()
+        } else {
+            rust_string(kept)
         };
         petsc_sys::ff_print_free(kept);
         text

@@ -46,9 +46,10 @@ impl Destination {
     /// # Errors
     /// [`base::Error::Environment`].
     pub fn print(&self, text: &str) -> Result<()> {
-        match self.silent() {
-            true => Ok(()),
-            false => output::print(text),
+        if self.silent() {
+            Ok(())
+        } else {
+            output::print(text)
         }
     }
 

@@ -65,9 +65,10 @@ impl InterfaceNodes {
 
     /// The pressures that pictures show: the smoothed ones where there are some.
     pub(super) fn shown_pressure(&self) -> Vec<f64> {
-        match self.smoothed.is_empty() {
-            true => self.pressure(),
-            false => self.smoothed.clone(),
+        if self.smoothed.is_empty() {
+            self.pressure()
+        } else {
+            self.smoothed.clone()
         }
     }
 

@@ -168,9 +168,10 @@ fn check(
         n => format!(" on each of {n} ranks"),
     };
     // Factors of large subdomains are what more subdomains make smaller.
-    let change = match until == Until::Solved && need.solved(ranks) > 2.0 * need.assembled(ranks) {
-        true => "fewer elements per subdomain",
-        false => "fewer elements or subdomains",
+    let change = if until == Until::Solved && need.solved(ranks) > 2.0 * need.assembled(ranks) {
+        "fewer elements per subdomain"
+    } else {
+        "fewer elements or subdomains"
     };
     Err(Error::Environment(format!(
         "{name}: {what} would take about {}{on_each}, for {} elements in {} subdomains, where {} {} are left; \
@@ -185,16 +186,18 @@ fn check(
 
 /// Bytes in MB or GB.
 pub fn size(bytes: f64) -> String {
-    match bytes < 1e9 {
-        true => format!("{:.0} MB", bytes / 1e6),
-        false => format!("{:.1} GB", bytes / 1e9),
+    if bytes < 1e9 {
+        format!("{:.0} MB", bytes / 1e6)
+    } else {
+        format!("{:.1} GB", bytes / 1e9)
     }
 }
 
 /// A count, large ones in powers of ten.
 fn count(n: f64) -> String {
-    match n < 1e6 {
-        true => format!("{n}"),
-        false => format!("{n:.1e}"),
+    if n < 1e6 {
+        format!("{n}")
+    } else {
+        format!("{n:.1e}")
     }
 }

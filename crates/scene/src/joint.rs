@@ -61,9 +61,10 @@ impl Scene {
     fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &Matrices) -> Result<Subdomain> {
         let (body, inside) = self.place(mesh.index);
         let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
-        let f = match mesh.prescribed.iter().all(|u| *u == 0.0) {
-            true => mesh.free(&load),
-            false => assembly::free_load(mesh, &assembly::given_columns(mesh), &load),
+        let f = if mesh.prescribed.iter().all(|u| *u == 0.0) {
+            mesh.free(&load)
+        } else {
+            assembly::free_load(mesh, &assembly::given_columns(mesh), &load)
         };
         let whole = body.mesh();
         let nodes = whole.subdomain_nodes(inside);

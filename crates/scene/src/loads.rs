@@ -231,9 +231,10 @@ impl Scene {
         } else {
             assembly::load_vector(mesh, load.quadrature, |_, point| value(fields, point))
         };
-        let nodes = match body.spec.forces.is_empty() {
-            true => Vec::new(),
-            false => body.mesh().subdomain_nodes(inside),
+        let nodes = if body.spec.forces.is_empty() {
+            Vec::new()
+        } else {
+            body.mesh().subdomain_nodes(inside)
         };
         for &(dof, force) in &body.spec.forces {
             let (node, component) = (dof / body.components, dof % body.components);

@@ -37,9 +37,10 @@ impl Part {
         let chained = !spec.equations.is_empty()
             || interfaces.iter().any(|i| i.mortar.is_some())
             || obstacles.iter().any(|o| o.surface.is_some());
-        match chained {
-            true => Part::WHOLE,
-            false => self,
+        if chained {
+            Part::WHOLE
+        } else {
+            self
         }
     }
 
@@ -48,9 +49,12 @@ impl Part {
         let starts = starts(bodies, self.ranks);
         let Part { cyclic, ranks, .. } = self;
         move |b: usize| {
-            let rank_of = |s: usize| match cyclic {
-                true => s % ranks,
-                false => starts[1..].partition_point(|&end| end <= s),
+            let rank_of = |s: usize| {
+                if cyclic {
+                    s % ranks
+                } else {
+                    starts[1..].partition_point(|&end| end <= s)
+                }
             };
             base::linalg::sorted::distinct(bodies[b].subdomains().map(rank_of))
         }
@@ -64,9 +68,12 @@ impl Part {
             rank,
         } = self;
         let share = share(bodies, ranks, rank);
-        move |s| match cyclic {
-            true => s % ranks == rank,
-            false => share.contains(&s),
+        move |s| {
+            if cyclic {
+                s % ranks == rank
+            } else {
+                share.contains(&s)
+            }
         }
     }
 }

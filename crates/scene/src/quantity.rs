@@ -76,17 +76,19 @@ pub(super) const SPRING: Quantity = Quantity {
 impl Quantity {
     /// ρ or E.
     pub fn coefficient(form: &Form) -> Quantity {
-        match form.is_elastic() {
-            true => YOUNG,
-            false => RHO,
+        if form.is_elastic() {
+            YOUNG
+        } else {
+            RHO
         }
     }
 
     /// A value at a point, checked.
     pub fn at(&self, body: &BodySpec, value: f64, point: [f64; 3]) -> Result<f64> {
-        match (self.good)(value) {
-            true => Ok(value),
-            false => self.refuse(body, value, &format!(" at {}", body.spot_at(point))),
+        if (self.good)(value) {
+            Ok(value)
+        } else {
+            self.refuse(body, value, &format!(" at {}", body.spot_at(point)))
         }
     }
 

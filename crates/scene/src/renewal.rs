@@ -134,9 +134,10 @@ fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &Interface) -> Option<
         return None;
     };
     let which = contact.multipliers.unwrap_or(0);
-    match bodies[interface.bodies[0]].spec.name == *first {
-        true => Some(which),
-        false => Some(1 - which),
+    if bodies[interface.bodies[0]].spec.name == *first {
+        Some(which)
+    } else {
+        Some(1 - which)
     }
 }
 
@@ -289,9 +290,10 @@ fn sides(
             continue;
         };
         let which = contact.multipliers.unwrap_or(0);
-        let (pair, sides, which) = match a <= b {
-            true => ([a, b], sides, which),
-            false => ([b, a], [sides[1], sides[0]], 1 - which),
+        let (pair, sides, which) = if a <= b {
+            ([a, b], sides, which)
+        } else {
+            ([b, a], [sides[1], sides[0]], 1 - which)
         };
         let reach = contact.distance.unwrap_or(f64::INFINITY);
         meet(pair, sides, which, reach, Some(spec.ties.len() + number));

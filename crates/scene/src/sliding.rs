@@ -120,9 +120,10 @@ impl<'a> Sliders<'a> {
         let motion = |o: &Obstacle| {
             let way = scene.way_of(o, step);
             // Where contacts are renewed, displacements are those since the last step.
-            match scene.is_renewed() && step > 0 {
-                true => minus(way, scene.way_of(o, step - 1)),
-                false => way,
+            if scene.is_renewed() && step > 0 {
+                minus(way, scene.way_of(o, step - 1))
+            } else {
+                way
             }
         };
         let (mut faces, mut sizes) = (FxHashMap::default(), FxHashMap::default());

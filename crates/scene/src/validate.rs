@@ -149,11 +149,14 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
         RATIO.check(body, &body.poisson)?;
     }
     let components = form.components(body.mesh.dim());
-    let count = |n: usize, what: &str| match n == components || n == 1 && components == 1 {
-        true => Ok(()),
-        false => body.error(format!(
-            "{what} of {n} components where {components} were expected"
-        )),
+    let count = |n: usize, what: &str| {
+        if n == components || n == 1 && components == 1 {
+            Ok(())
+        } else {
+            body.error(format!(
+                "{what} of {n} components where {components} were expected"
+            ))
+        }
     };
     let none = body.load.fields.len() == 1 && body.load.fields[0].as_constant() == Some(0.0);
     if !none {
@@ -246,9 +249,10 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
                 };
                 let value = field.eval(&at);
                 if !(LOAD.good)(value) {
-                    let wanted = match value.is_finite() {
-                        true => format!("at most {LARGEST:e} was expected (take other units)"),
-                        false => "a finite number was expected".into(),
+                    let wanted = if value.is_finite() {
+                        format!("at most {LARGEST:e} was expected (take other units)")
+                    } else {
+                        "a finite number was expected".into()
                     };
                     return body.error(format!(
                         "Dirichlet value {value:?} at {} on side {} where {wanted}",

@@ -300,9 +300,10 @@ impl<'a> ActiveSet<'a> {
         let rows = method.dual().stiffness.jump.rows_between_bodies();
         let (was, now) = (&self.state.before, &self.state.active);
         let [active, entered, left] = changes(comm, &was[rows.clone()], &now[rows]);
-        let exact = match method.settings.spectrum {
-            true => method.spectrum()?,
-            false => None,
+        let exact = if method.settings.spectrum {
+            method.spectrum()?
+        } else {
+            None
         };
         let relative = |r: f64| match self.state.reference {
             reference if reference > 0.0 => r / reference,

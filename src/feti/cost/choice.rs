@@ -71,9 +71,10 @@ impl Estimate {
     /// coefficients change its number of iterations much.
     fn pays(&self, shape: Shape) -> bool {
         let contact = usize::from(shape.inequalities);
-        let (few, growth, own) = match shape.in_space {
-            true => (ITERATIONS_IN_SPACE, GROWTH[1 + contact], self.iteration),
-            false => (APPLICATIONS[contact], GROWTH[0], 0.0),
+        let (few, growth, own) = if shape.in_space {
+            (ITERATIONS_IN_SPACE, GROWTH[1 + contact], self.iteration)
+        } else {
+            (APPLICATIONS[contact], GROWTH[0], 0.0)
         };
         let many = few * (1.0 + growth * (shape.across - 1.0)).sqrt();
         self.setup + few * (own + self.more) < many * self.iteration
@@ -84,9 +85,10 @@ impl Estimate {
 /// there. As large a weight as its neighbours have lets κ grow: 889 instead of 55 for the case `rod-4` of `bench`. In
 /// the plane ρ is the better weight (8 instead of 20 for the case `holes`).
 pub fn scaling(problem: &Substructures) -> Scaling {
-    match problem.ragged {
-        true => Scaling::Stiffness,
-        false => Scaling::Rho,
+    if problem.ragged {
+        Scaling::Stiffness
+    } else {
+        Scaling::Rho
     }
 }
 
@@ -149,8 +151,9 @@ pub fn preconditioner(
         in_space: space == 1,
         inequalities: inequalities > 0.0,
     };
-    match estimate.pays(shape) {
-        true => PcType::CoarseCorrected,
-        false => PcType::Dirichlet,
+    if estimate.pays(shape) {
+        PcType::CoarseCorrected
+    } else {
+        PcType::Dirichlet
     }
 }

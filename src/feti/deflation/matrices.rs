@@ -95,9 +95,12 @@ impl Matrices {
             }
             // Q = M⁻¹ leads to the rows of neighbours.
             let wide = natural.projector == ProjectorKind::Preconditioner;
-            let reach = |b: usize| match wide {
-                true => graph.around(&graph.near[b]),
-                false => near(b),
+            let reach = |b: usize| {
+                if wide {
+                    graph.around(&graph.near[b])
+                } else {
+                    near(b)
+                }
             };
             let columns = sweep::kernel_columns(&named(natural.qg()), start, reach);
             fqg = Panels::new(&sweep::images(&like, graph, &columns, f)?);

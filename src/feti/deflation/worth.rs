@@ -77,9 +77,10 @@ pub fn from(graph: &BodyGraph, start: &[usize], problem: Problem) -> f64 {
     let vectors = VECTORS * bodies as f64;
     let search = EXPANSIONS * near as f64 + vectors;
     let renewal = vectors + motions as f64;
-    let (products, reduction) = match problem.contact {
-        true => (search / STEPS + renewal, REDUCTION_IN_STEPS),
-        false => (search + renewal, REDUCTION),
+    let (products, reduction) = if problem.contact {
+        (search / STEPS + renewal, REDUCTION_IN_STEPS)
+    } else {
+        (search + renewal, REDUCTION)
     };
     (products / reduction + (1.5 * Adaptive::USUAL).sqrt()).powi(2)
 }

@@ -110,9 +110,10 @@ fn single(b: &Dense, r: usize, weights: &[f64]) -> Vec<f64> {
     let terms = (0..b.cols).map(|j| b.get(r, j) * (least / weights[j]));
     let terms: Vec<f64> = terms.collect();
     let sum: f64 = (0..b.cols).map(|j| b.get(r, j) * terms[j]).sum();
-    match sum > 0.0 {
-        true => terms.iter().map(|t| t / sum).collect(),
-        false => terms,
+    if sum > 0.0 {
+        terms.iter().map(|t| t / sum).collect()
+    } else {
+        terms
     }
 }
 

@@ -46,9 +46,10 @@ impl Kkt {
     pub(crate) fn beyond(&self, rtol: f64) -> f64 {
         let forces = self.stationarity / (CREDIBLE * rtol).clamp(1e-3, 0.5);
         let jumps = self.feasibility / (CREDIBLE * rtol).clamp(1e-6, 0.1);
-        match (forces + jumps).is_nan() {
-            true => f64::NAN,
-            false => forces.max(jumps),
+        if (forces + jumps).is_nan() {
+            f64::NAN
+        } else {
+            forces.max(jumps)
         }
     }
 }

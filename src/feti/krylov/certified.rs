@@ -160,9 +160,10 @@ impl LinearMethod {
     pub(crate) fn further(&self, solution: &LinearSolution, factor: f64) -> Result<LinearSolution> {
         let clock = Instant::now();
         let next = self.corrected(solution, factor)?;
-        let mut next = match next.converged {
-            true => next.solution,
-            false => solution.clone(),
+        let mut next = if next.converged {
+            next.solution
+        } else {
+            solution.clone()
         };
         next.solve_seconds += clock.elapsed().as_secs_f64();
         self.certify(next)

@@ -25,9 +25,10 @@ pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
     if !any(system.session.comm(), holds) {
         return Ok(None);
     }
-    let a = match system.deflation().is_some() {
-        true => shells::deflated_operator(system)?,
-        false => shells::operator(system)?,
+    let a = if system.deflation().is_some() {
+        shells::deflated_operator(system)?
+    } else {
+        shells::operator(system)?
     };
     let c = shells::preconditioner(system)?;
     let e = shells::range(system)?;

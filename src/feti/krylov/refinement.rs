@@ -168,9 +168,10 @@ pub(super) struct Step {
 /// Whether a certificate of `left` has reached this tolerance. Residuals of the iteration do not fall below
 /// [`ROUNDING`]; with a smaller tolerance the certificate alone decides.
 fn is_reached(rtol: f64, left: f64) -> bool {
-    match rtol < ROUNDING {
-        true => left <= rtol,
-        false => left <= WORTH * rtol,
+    if rtol < ROUNDING {
+        left <= rtol
+    } else {
+        left <= WORTH * rtol
     }
 }
 

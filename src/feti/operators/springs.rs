@@ -144,9 +144,12 @@ fn inverse(n: &Dense, c: &[f64]) -> Dense {
     };
     let least = RIGID * c.iter().fold(0.0f64, |a, c| a.max(*c));
     let soft = |i: usize| weighted(i, i) > least;
-    let factor = Semidefinite::new(&Dense::from_fn(p, p, |i, j| match soft(i) && soft(j) {
-        true => weighted(i, j),
-        false => 0.0,
+    let factor = Semidefinite::new(&Dense::from_fn(p, p, |i, j| {
+        if soft(i) && soft(j) {
+            weighted(i, j)
+        } else {
+            0.0
+        }
     }));
     let mut x = Dense::zeros(n.rows, n.rows);
     for r in 0..n.rows {

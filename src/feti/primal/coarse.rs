@@ -47,9 +47,10 @@ impl PrimalProblem {
         }
         let matrix = std::mem::take(&mut space.matrix);
         let rhs = PetscVec::mpi(session, space.n_owned)?;
-        let own = match Options::new(session, prefix).any()? {
-            true => None,
-            false => own(session, space, team, &matrix, (known, keeps)),
+        let own = if Options::new(session, prefix).any()? {
+            None
+        } else {
+            own(session, space, team, &matrix, (known, keeps))
         };
         let solver = match own {
             Some(bodies) => Solver::Own(bodies),

@@ -118,9 +118,10 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
     let largest = sizes.first().copied().unwrap_or(0.0);
     let moving = sizes.iter().filter(|s| **s > MOVES * largest).count();
     // Where everything moves, as usual, V would only change the basis.
-    let basis = match moving == k {
-        true => faer::Mat::identity(k, k),
-        false => v.get(.., ..moving).to_owned(),
+    let basis = if moving == k {
+        faer::Mat::identity(k, k)
+    } else {
+        v.get(.., ..moving).to_owned()
     };
     if moving == 0 {
         return Dense::zeros(k, 0);
@@ -133,9 +134,10 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
     // (`projector/blocks.rs`).
     let own = (0..k).filter(|&c| residuals.col(c).norm_l2() <= FREE * scale);
     let own: Vec<usize> = own.collect();
-    let null = match moving == k && own.len() == k - rank {
-        true => faer::Mat::from_fn(k, own.len(), |i, j| f64::from(u8::from(i == own[j]))),
-        false => &basis * v.get(.., rank..),
+    let null = if moving == k && own.len() == k - rank {
+        faer::Mat::from_fn(k, own.len(), |i, j| f64::from(u8::from(i == own[j])))
+    } else {
+        &basis * v.get(.., rank..)
     };
     let mut out = Dense::zeros(k, moving - rank);
     for j in 0..out.cols {

@@ -104,13 +104,13 @@ impl NaturalCoarse {
         known.sum(comm, &mut e);
         known.sum(comm, &mut size);
         let largest = known.largest(comm, &size);
-        let rounding = match self.noise.is_empty() {
-            true => vec![0.0; size.len()],
-            false => size
-                .iter()
+        let rounding = if self.noise.is_empty() {
+            vec![0.0; size.len()]
+        } else {
+            size.iter()
                 .zip(&self.noise)
                 .map(|(s, n)| s * n.sqrt())
-                .collect(),
+                .collect()
         };
         KernelLoad {
             e,

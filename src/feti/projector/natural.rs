@@ -216,9 +216,10 @@ impl NaturalCoarse {
         let weak = self.projector == ProjectorKind::Preconditioner && !self.is_sound()?;
         // An answer that is as bad with the diagonal has another reason.
         self.mended = weak;
-        match weak {
-            true => self.weighted(problem, stiffness, preconditioner, MENDED),
-            false => Ok(()),
+        if weak {
+            self.weighted(problem, stiffness, preconditioner, MENDED)
+        } else {
+            Ok(())
         }
     }
 
@@ -291,9 +292,10 @@ impl NaturalCoarse {
             &self.prefix,
             chosen,
         )?;
-        let spread = match gtg.is_shared() {
-            true => self.spread_for(session, shape)?,
-            false => None,
+        let spread = if gtg.is_shared() {
+            self.spread_for(session, shape)?
+        } else {
+            None
         };
         let gtg = self.gtg.insert(gtg);
         gtg.set_spread(spread);

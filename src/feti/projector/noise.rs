@@ -25,9 +25,10 @@ use super::rows::Rows;
 impl NaturalCoarse {
     /// All rows of B R, of which only the chosen ones may hold, without what they do by rounding alone. Collective.
     pub fn rows_without_noise(&self, comm: &SimpleCommunicator, chosen: &[bool]) -> Cow<'_, Rows> {
-        match self.noise.is_empty() {
-            true => Cow::Borrowed(&self.all),
-            false => Cow::Owned(self.without_noise(self.all.clone(), &self.gram(comm, chosen))),
+        if self.noise.is_empty() {
+            Cow::Borrowed(&self.all)
+        } else {
+            Cow::Owned(self.without_noise(self.all.clone(), &self.gram(comm, chosen)))
         }
     }
 

@@ -112,9 +112,10 @@ impl Shape {
                 if !own {
                     outgoing[0].add(row, column, value);
                 }
-                match team.has(column) {
-                    true => transpose.val[self.pattern.entry(column, row)] += value,
-                    false => outgoing[1].add(column, row, value),
+                if team.has(column) {
+                    transpose.val[self.pattern.entry(column, row)] += value
+                } else {
+                    outgoing[1].add(column, row, value)
                 }
             }
         }

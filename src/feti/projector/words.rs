@@ -56,9 +56,10 @@ fn separated(twists: &[Twist]) -> [Vec<Twist>; 2] {
     let mut turns: Vec<[f64; 6]> = Vec::new();
     for row in rows {
         let turning = norm([row[0], row[1], row[2]]);
-        match turning > SMALL * norm([row[3], row[4], row[5]]) {
-            true => turns.push(row),
-            false => slides.push([0.0, 0.0, 0.0, row[3], row[4], row[5]]),
+        if turning > SMALL * norm([row[3], row[4], row[5]]) {
+            turns.push(row)
+        } else {
+            slides.push([0.0, 0.0, 0.0, row[3], row[4], row[5]])
         }
     }
     let slides = reduced(slides);
@@ -136,11 +137,10 @@ fn turn(t: &Twist, s: &str) -> String {
         _ => format!("{} through {place}", direction(axis)),
     };
     let screw = along.abs() > SMALL * t.radius.max(f64::MIN_POSITIVE);
-    match screw {
-        true => format!(
-            "turn{s} about {about} and slide{s} along this axis by {along:.4} for each radian"
-        ),
-        false => format!("turn{s} about {about}"),
+    if screw {
+        format!("turn{s} about {about} and slide{s} along this axis by {along:.4} for each radian")
+    } else {
+        format!("turn{s} about {about}")
     }
 }
 
@@ -160,9 +160,12 @@ fn direction(v: [f64; 3]) -> String {
 
 /// Coordinates with four digits; what is rounding beside `size` is zero.
 fn coordinates(at: &[f64], size: f64) -> String {
-    let one = |x: &f64| match x.abs() <= SMALL * size {
-        true => "0".to_string(),
-        false => short(*x),
+    let one = |x: &f64| {
+        if x.abs() <= SMALL * size {
+            "0".to_string()
+        } else {
+            short(*x)
+        }
     };
     let all: Vec<String> = at.iter().map(one).collect();
     format!("({})", all.join(", "))
@@ -171,9 +174,10 @@ fn coordinates(at: &[f64], size: f64) -> String {
 /// Four significant digits, without zeros at the end.
 fn short(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().expect("a number is a number");
-    match (1e-4..1e6).contains(&rounded.abs()) {
-        true => format!("{rounded}"),
-        false => format!("{rounded:e}"),
+    if (1e-4..1e6).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
     }
 }
 

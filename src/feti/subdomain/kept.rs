@@ -58,9 +58,12 @@ impl Kept {
         analysed: &[Option<Arc<Analysed>>],
         coarse: Vec<Pattern>,
     ) -> Kept {
-        let form = |local: &Scaled| match local.is_implicit() {
-            true => OperatorForm::Implicit,
-            false => OperatorForm::Explicit,
+        let form = |local: &Scaled| {
+            if local.is_implicit() {
+                OperatorForm::Implicit
+            } else {
+                OperatorForm::Explicit
+            }
         };
         Kept {
             interfaces: (0..locals.len()).map(|j| Interface::of(jump, j)).collect(),
@@ -86,13 +89,16 @@ impl Kept {
 
     /// What is still right with other rows, for each local subdomain: nothing where its interface has changed.
     pub fn still(&self, jump: &Jump) -> Vec<Still> {
-        let of = |(j, interface): (usize, &Interface)| match *interface == Interface::of(jump, j) {
-            false => Still::default(),
-            true => Still {
-                form: Some(self.forms[j]),
-                whole: self.locals.as_ref().map(|l| l[j].clone()),
-                analysed: self.analysed[j].clone(),
-            },
+        let of = |(j, interface): (usize, &Interface)| {
+            if *interface != Interface::of(jump, j) {
+                Still::default()
+            } else {
+                Still {
+                    form: Some(self.forms[j]),
+                    whole: self.locals.as_ref().map(|l| l[j].clone()),
+                    analysed: self.analysed[j].clone(),
+                }
+            }
         };
         self.interfaces.iter().enumerate().map(of).collect()
     }

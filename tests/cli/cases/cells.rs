@@ -133,9 +133,12 @@ fn bar(kind: &str, clockwise: [bool; 2]) -> String {
     }
     // Sides of the bar: 1 on the left, 2 on the right.
     let quadratic = !matches!(kind, "quad4" | "tri3");
-    let side = |tag: usize, i: usize| match quadratic {
-        true => format!("8 2 {tag} {tag} {} {} {}", at(i, 0), at(i, 2), at(i, 1)),
-        false => format!("1 2 {tag} {tag} {} {}", at(i, 0), at(i, 2)),
+    let side = |tag: usize, i: usize| {
+        if quadratic {
+            format!("8 2 {tag} {tag} {} {} {}", at(i, 0), at(i, 2), at(i, 1))
+        } else {
+            format!("1 2 {tag} {tag} {} {}", at(i, 0), at(i, 2))
+        }
     };
     cells.insert(0, side(1, 0));
     cells.insert(1, side(2, 4));

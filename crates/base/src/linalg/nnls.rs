@@ -42,9 +42,12 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
         loop {
             let z = least_squares(a, b, &passive);
             // The part of the way to z on which column j stays in the cone.
-            let way = |&(&j, &z): &(&usize, &f64)| match !free[j] && z <= 0.0 {
-                true => x[j] / (x[j] - z),
-                false => f64::INFINITY,
+            let way = |&(&j, &z): &(&usize, &f64)| {
+                if !free[j] && z <= 0.0 {
+                    x[j] / (x[j] - z)
+                } else {
+                    f64::INFINITY
+                }
             };
             let ways: Vec<f64> = passive.iter().zip(&z).map(|pair| way(&pair)).collect();
             let step = ways.iter().fold(f64::INFINITY, |a, b| a.min(*b));
@@ -89,10 +92,11 @@ fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
     };
     let rank = diagonal.take_while(|&i| r[(i, i)].abs() > DEPENDENT * largest);
     let rank = rank.count();
-    let across = faer::Mat::from_fn(columns.len(), rank, |i, k| match k <= i {
-        true => r[(k, i)],
-        false => 0.0,
-    });
+    let across = faer::Mat::from_fn(
+        columns.len(),
+        rank,
+        |i, k| if k <= i { r[(k, i)] } else { 0.0 },
+    );
     let second = across.qr();
     let (q2, r2) = (second.compute_thin_Q(), second.thin_R());
     let mut c: Vec<f64> = Vec::with_capacity(rank);

@@ -24,9 +24,10 @@ impl Materials {
     /// Those of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
     pub fn new(session: &Session, scene: &Scene, parts: &[SteppedMesh], place: Place) -> Materials {
         // Scalar fields have no stress.
-        match scene.form.is_elastic() {
-            true => Materials::told_apart(session, parts, place),
-            false => Materials(BTreeMap::new()),
+        if scene.form.is_elastic() {
+            Materials::told_apart(session, parts, place)
+        } else {
+            Materials(BTreeMap::new())
         }
     }
 

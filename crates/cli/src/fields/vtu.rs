@@ -73,9 +73,10 @@ impl Gathered {
     ) -> Result<()> {
         let whole = |list: &[u32]| list.iter().map(|&k| k as i32).collect::<Vec<i32>>();
         let [body, subdomain, rank] = [&self.body, &self.subdomain, &self.rank].map(|l| whole(l));
-        let contact = match contact {
-            true => Some(self.contact_fields(scene, rows)?),
-            false => None,
+        let contact = if contact {
+            Some(self.contact_fields(scene, rows)?)
+        } else {
+            None
         };
         let (c, u) = self.vectors(scene);
         let mut grid = Vtu::new(&self.points, &self.cells).point_data("u", c, &u[..]);

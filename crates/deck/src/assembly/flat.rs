@@ -214,9 +214,12 @@ impl<'a> Flat<'a> {
             "ELEMENT" if nodes == 0 && cells == 0 && own.instance.is_some() => None,
             "ELEMENT" => {
                 let begins = elements.begins(row);
-                each(row, &|k, f| match begins && k == 0 {
-                    true => data.number(f, Of::Cells),
-                    false => target(f, Of::Nodes),
+                each(row, &|k, f| {
+                    if begins && k == 0 {
+                        data.number(f, Of::Cells)
+                    } else {
+                        target(f, Of::Nodes)
+                    }
                 })
             }
             "NSET" => set(row, Of::Nodes),

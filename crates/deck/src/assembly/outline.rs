@@ -186,9 +186,10 @@ impl<'a> Outline<'a> {
         let found = self.parts.iter().position(|p| p.name == name);
         found.ok_or_else(|| {
             let names: Vec<String> = self.parts.iter().take(8).map(|p| clip(p.name)).collect();
-            let list = match names.is_empty() {
-                true => "the deck has none".into(),
-                false => format!("parts are {}", names.join(", ")),
+            let list = if names.is_empty() {
+                "the deck has none".into()
+            } else {
+                format!("parts are {}", names.join(", "))
             };
             let message = format!("*INSTANCE: there is no part {} ({list})", clip(name));
             cards.files.error(card.place, message)

@@ -75,9 +75,10 @@ impl Elements {
 
     pub fn begins(&mut self, row: &Row) -> bool {
         let begins = self.left == 0;
-        let (due, here) = match begins {
-            true => (self.nodes, row.fields.len().saturating_sub(1)),
-            false => (self.left, row.fields.len()),
+        let (due, here) = if begins {
+            (self.nodes, row.fields.len().saturating_sub(1))
+        } else {
+            (self.left, row.fields.len())
         };
         self.left = due.saturating_sub(here);
         begins
@@ -102,9 +103,12 @@ pub(super) fn turned(card: &Card, row: &Row, placement: &Placement) -> Option<Ve
     let numbers = numbers.filter(|n| n.len() == 6)?;
     let cylindrical = value(card, "TYPE") == Some("C");
     let points = numbers.chunks(3).map(|x| [x[0], x[1], x[2]]);
-    let placed = points.flat_map(|x| match cylindrical {
-        true => placement.point(x),
-        false => placement.vector(x),
+    let placed = points.flat_map(|x| {
+        if cylindrical {
+            placement.point(x)
+        } else {
+            placement.vector(x)
+        }
     });
     Some(placed.map(|x| format!("{x:?}")).collect())
 }

@@ -88,9 +88,10 @@ impl Placement {
 
     /// What a direction becomes.
     pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
-        match self.turn == EYE {
-            true => v,
-            false => self.turn.map(|row| dot(row, v)),
+        if self.turn == EYE {
+            v
+        } else {
+            self.turn.map(|row| dot(row, v))
         }
     }
 }

@@ -25,9 +25,10 @@ impl Side {
 
     /// Place along the axis of the elements on this side of a box of `elements`.
     pub fn level(self, elements: [usize; 3]) -> usize {
-        match self.upper {
-            true => elements[self.axis] - 1,
-            false => 0,
+        if self.upper {
+            elements[self.axis] - 1
+        } else {
+            0
         }
     }
 

@@ -35,15 +35,14 @@ pub fn recovered_squares(
     let n = points.len() * material.components(dim);
     assert_eq!(nodal.len(), n, "a cell has {n} degrees of freedom");
     let mut at = [NodeStress::default(); CellKind::MOST_NODES];
-    let own = match integration == Integration::Incompatible
+    let own = if integration == Integration::Incompatible
         || integration == Integration::Reduced && kind.order() == 1
     {
-        true => {
-            let at = &mut at[..points.len()];
-            stress_at_nodes(kind, dim, points, material, integration, nodal, at);
-            Own::At(at)
-        }
-        false => Own::Of(nodal),
+        let at = &mut at[..points.len()];
+        stress_at_nodes(kind, dim, points, material, integration, nodal, at);
+        Own::At(at)
+    } else {
+        Own::Of(nodal)
     };
     let moduli = moduli(kind, dim, material, integration);
     by_kind!(

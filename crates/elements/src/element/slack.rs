@@ -134,9 +134,10 @@ fn sees_all<const D: usize, const N: usize>(
 
 /// The points at which a cell sees strains.
 fn purpose(kind: CellKind, integration: Integration) -> Purpose {
-    match may_slack(kind, integration) {
-        true => Purpose::Reduced,
-        false => Purpose::Full,
+    if may_slack(kind, integration) {
+        Purpose::Reduced
+    } else {
+        Purpose::Full
     }
 }
 
@@ -175,9 +176,10 @@ fn largest_strain<const D: usize, const N: usize>(
         .iter()
         .map(|row| row.iter().zip(&even).map(|(b, u)| b * u).sum::<f64>());
     let largest = strains.fold(0.0, |x, y| most(x, &y));
-    match size > 0.0 {
-        true => largest / size,
-        false => 0.0,
+    if size > 0.0 {
+        largest / size
+    } else {
+        0.0
     }
 }
 

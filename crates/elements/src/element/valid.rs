@@ -109,9 +109,10 @@ pub fn check_jacobian(
     if affine {
         return Ok(None);
     }
-    let (shape, corners) = match is_straight(kind, points) {
-        true => (kind.linear(), &points[..kind.corners()]),
-        false => (kind, points),
+    let (shape, corners) = if is_straight(kind, points) {
+        (kind.linear(), &points[..kind.corners()])
+    } else {
+        (kind, points)
     };
     // The map of the pyramid has no limit at the apex; on the way there it is that of a point of the base.
     let nodes = signs(shape, corners, Purpose::Nodes);
@@ -126,9 +127,10 @@ pub fn check_jacobian(
     let size: f64 = table(kind, reference).weights.iter().sum();
     Ok(Some(Doubt {
         node,
-        jacobian: match nodes.negative || between.negative {
-            true => least * size / whole,
-            false => 0.0,
+        jacobian: if nodes.negative || between.negative {
+            least * size / whole
+        } else {
+            0.0
         },
     }))
 }
@@ -147,9 +149,10 @@ struct Signs {
 
 impl Signs {
     fn and(self, other: Signs) -> Signs {
-        let (less, more) = match other.ratio < self.ratio {
-            true => (other, self),
-            false => (self, other),
+        let (less, more) = if other.ratio < self.ratio {
+            (other, self)
+        } else {
+            (self, other)
         };
         Signs {
             positive: less.positive || more.positive,

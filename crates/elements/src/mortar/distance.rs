@@ -11,9 +11,10 @@ const ROUNDING: f64 = 1e-13;
 
 /// How far along the normals the other side is looked for: `wanted`, or a few edges where that is infinite.
 pub fn reach(side: &Side, other: &Side, wanted: f64) -> f64 {
-    match wanted.is_finite() {
-        true => wanted,
-        false => FAR * side.longest().max(other.longest()),
+    if wanted.is_finite() {
+        wanted
+    } else {
+        FAR * side.longest().max(other.longest())
     }
 }
 
@@ -34,8 +35,9 @@ pub fn distance<K: Copy>(
     };
     let distance = along(places[1], other) - along(places[0], own);
     let size = origin.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-    match distance.abs() <= ROUNDING * size {
-        true => 0.0,
-        false => distance,
+    if distance.abs() <= ROUNDING * size {
+        0.0
+    } else {
+        distance
     }
 }

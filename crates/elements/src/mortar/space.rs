@@ -161,9 +161,10 @@ fn degree(side: &Side, piece: &Piece) -> usize {
     let [a, b, c] = [0, 1, 2].map(tangents);
     let differ = |x: [[f64; 3]; 2]| (0..2).map(|j| norm(minus(a[j], x[j]))).fold(0.0, f64::max);
     let affine = differ(b).max(differ(c)) <= 1e-12 * (norm(a[0]) + norm(a[1]));
-    match affine {
-        true => side.faces()[piece.face as usize].kind.order() - 1,
-        false => 2,
+    if affine {
+        side.faces()[piece.face as usize].kind.order() - 1
+    } else {
+        2
     }
 }
 
@@ -171,9 +172,10 @@ fn degree(side: &Side, piece: &Piece) -> usize {
 fn cut(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let sign = |p: &[[f64; 2]]| signed(p).signum();
     let turn = sign(a);
-    let mut out: Vec<[f64; 2]> = match sign(b) == turn {
-        true => b.to_vec(),
-        false => b.iter().rev().copied().collect(),
+    let mut out: Vec<[f64; 2]> = if sign(b) == turn {
+        b.to_vec()
+    } else {
+        b.iter().rev().copied().collect()
     };
     for k in 0..a.len() {
         let (p, q) = (a[k], a[(k + 1) % a.len()]);

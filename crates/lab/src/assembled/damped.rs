@@ -104,9 +104,12 @@ impl<'a> Search<'a> {
     ) -> Result<Search<'a>> {
         let diagonal = reduced.diagonal();
         let compliance = |k: usize| diagonal.get(k).map_or(0.0, |stiffness| 1.0 / stiffness);
-        let stiffness = |r: &Row| match r.plus == r.minus {
-            true => 0.0,
-            false => 1.0 / (compliance(r.plus) + compliance(r.minus)),
+        let stiffness = |r: &Row| {
+            if r.plus == r.minus {
+                0.0
+            } else {
+                1.0 / (compliance(r.plus) + compliance(r.minus))
+            }
         };
         Ok(Search {
             session: session.clone(),

@@ -101,9 +101,10 @@ impl Eliminated {
         let left = rest.values().copied().fold(0.0, largest);
         if left <= DEPENDENT * size {
             let any = equation.first().map_or(0, |t| t.0);
-            return match value.abs() > CONTRADICTS * entered {
-                true => Err(Trouble::Contradicts(any)),
-                false => Ok(None),
+            return if value.abs() > CONTRADICTS * entered {
+                Err(Trouble::Contradicts(any))
+            } else {
+                Ok(None)
             };
         }
         // Rounding would fill T.

@@ -235,14 +235,16 @@ pub fn solve(
         let to_the_end = stop <= target;
         let refined = matches!(solve, Solve::Refined(_));
         // Sets that come back differ only in rows that rounding decides.
-        let right = match refined {
-            true => caution != Caution::Loose && certificate.holds(),
-            false => search.is_some() && certificate.holds(),
+        let right = if refined {
+            caution != Caution::Loose && certificate.holds()
+        } else {
+            search.is_some() && certificate.holds()
         };
         let settled = stays || right;
-        let met = match refined {
-            true => certificate.holds(),
-            false => relative <= tolerances.rtol,
+        let met = if refined {
+            certificate.holds()
+        } else {
+            relative <= tolerances.rtol
         };
         let idle = |r: &usize| judged.idle(*r, IDLE);
         let held = restored.iter().all(idle);
@@ -285,9 +287,10 @@ pub fn solve(
         if search.is_none() {
             if loose || steps >= STEPS || (back && caution == Caution::Single) {
                 search = Some(Search::new(session, rows, reduced)?);
-                why_search = match loose {
-                    true => "DIVERGED_CONTACT_LOOSE",
-                    false => "DIVERGED_CONTACT_ITS",
+                why_search = if loose {
+                    "DIVERGED_CONTACT_LOOSE"
+                } else {
+                    "DIVERGED_CONTACT_ITS"
                 };
                 caution = Caution::Exact;
             } else if back {

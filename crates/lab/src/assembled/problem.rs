@@ -30,9 +30,10 @@ impl Problem {
         format: Format,
     ) -> Result<Problem> {
         let system = System::new(session, scene, unknowns, format)?;
-        let rows = match scene.has_contact() {
-            true => Inequalities::new(scene, unknowns.layout),
-            false => Inequalities::default(),
+        let rows = if scene.has_contact() {
+            Inequalities::new(scene, unknowns.layout)
+        } else {
+            Inequalities::default()
         };
         let trace = Trace::new(&rows, &system.b);
         Ok(Problem {

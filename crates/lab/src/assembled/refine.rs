@@ -82,9 +82,10 @@ impl<'a> Refiner<'a> {
             let mut sum = Twice::default();
             sum.add(f[row - range.start]);
             for (&c, &v) in cols.iter().zip(&vals) {
-                let u = match range.contains(&(c as usize)) {
-                    true => own[c as usize - range.start],
-                    false => near[self.ghosts.binary_search(&c).expect("columns were listed")],
+                let u = if range.contains(&(c as usize)) {
+                    own[c as usize - range.start]
+                } else {
+                    near[self.ghosts.binary_search(&c).expect("columns were listed")]
                 };
                 sum.add_product(-v, u);
             }
@@ -155,9 +156,10 @@ impl<'a> Refiner<'a> {
             if out.rounds > 1 && out.correction < ROUNDING {
                 break;
             }
-            idle = match out.correction > GAIN * least {
-                true => idle + 1,
-                false => 0,
+            idle = if out.correction > GAIN * least {
+                idle + 1
+            } else {
+                0
             };
             if idle > 1 {
                 break;

@@ -66,9 +66,10 @@ impl System {
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
         let all = unknowns.are_all() && !unknowns.layout.has_dependent();
-        let mut reference = match all {
-            true => b.norm2()?,
-            false => norm_f(session, &mine, unknowns.layout)?,
+        let mut reference = if all {
+            b.norm2()?
+        } else {
+            norm_f(session, &mine, unknowns.layout)?
         };
         if reference == 0.0 {
             reference = b.norm2()?;

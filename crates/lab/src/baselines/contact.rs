@@ -36,9 +36,10 @@ pub fn baseline(
         let unknowns = Unknowns::all(&layout);
         let system = System::new(session, scene, &unknowns, row.format)?;
         let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
-        let load = match job.again {
-            true => Some(SecondLoad::new(&layout).of(&unknowns, &system.b)?),
-            false => None,
+        let load = if job.again {
+            Some(SecondLoad::new(&layout).of(&unknowns, &system.b)?)
+        } else {
+            None
         };
         let reduced = Reduced::new(session, &system, &rows, kernel)?;
         Ok((rows, reduced, load))

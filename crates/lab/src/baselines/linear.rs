@@ -158,18 +158,18 @@ pub fn baseline(
         })
     })?;
     let memory = memory(session);
-    match unknowns.are_all() {
-        true => attempt.u.save(file)?,
-        false => unknowns.spread(session, &attempt.u)?.save(file)?,
+    if unknowns.are_all() {
+        attempt.u.save(file)?
+    } else {
+        unknowns.spread(session, &attempt.u)?.save(file)?
     }
-    let again = match job.again && message.is_none() {
-        true => {
-            krylov.set_tolerances(Some(rtol), None, None, None)?;
-            let b = SecondLoad::new(&layout).of(&unknowns, &system.b)?;
-            let u = b.duplicate()?;
-            Some(timed(session, || ksp.solve(&b, &u))?.1)
-        }
-        false => None,
+    let again = if job.again && message.is_none() {
+        krylov.set_tolerances(Some(rtol), None, None, None)?;
+        let b = SecondLoad::new(&layout).of(&unknowns, &system.b)?;
+        let u = b.duplicate()?;
+        Some(timed(session, || ksp.solve(&b, &u))?.1)
+    } else {
+        None
     };
     let outcome = attempt.report(rtol, message, [assemble, setup, memory]);
     Ok(Outcome { again, ..outcome })

@@ -95,9 +95,10 @@ pub fn solve(
         })
     })?;
     attempt.u.save(file)?;
-    let again = match job.again && message.is_none() {
-        true => Some(again(session, &mut solver, &layout, rtol)?),
-        false => None,
+    let again = if job.again && message.is_none() {
+        Some(again(session, &mut solver, &layout, rtol)?)
+    } else {
+        None
     };
     let mut outcome = attempt.report(rtol, message, [assemble, setup, bytes]);
     outcome.again = again;

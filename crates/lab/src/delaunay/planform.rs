@@ -97,9 +97,10 @@ pub(crate) fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2], n: usize)
     let whole = to - from == TAU;
     let at = |k: usize| {
         let k = if whole { k % n } else { k };
-        let t = match k == n {
-            true => to,
-            false => from + (to - from) * k as f64 / n as f64,
+        let t = if k == n {
+            to
+        } else {
+            from + (to - from) * k as f64 / n as f64
         };
         // Quarters of a circle get exact zeros: other curves end there.
         let [c, s] = [t.cos(), t.sin()].map(|v| if v.abs() < 1e-15 { 0.0 } else { v });

@@ -54,9 +54,10 @@ impl Solid {
     fn upright(&self, [a, b, c, d]: [usize; 4]) -> [usize; 4] {
         let [p, q, r, s] = [a, b, c, d].map(|n| self.points[n]);
         let [u, v, w] = [q, r, s].map(|x| minus(x, p));
-        match dot(cross(u, v), w) > 0.0 {
-            true => [a, b, c, d],
-            false => [b, a, c, d],
+        if dot(cross(u, v), w) > 0.0 {
+            [a, b, c, d]
+        } else {
+            [b, a, c, d]
         }
     }
 

@@ -169,9 +169,10 @@ pub fn grid(
                 family.name, solution.status
             )));
         }
-        let exact = match exact {
-            true => solver.spectrum()?.map(|s| s.kappa()),
-            false => None,
+        let exact = if exact {
+            solver.spectrum()?.map(|s| s.kappa())
+        } else {
+            None
         };
         Ok(KappaOf {
             kappa: solution.estimate.map_or(f64::NAN, |s| s.kappa()),

@@ -110,9 +110,10 @@ impl Deflation {
             0 => found,
             n => format!("{found} and {n} that bodies share"),
         };
-        let found = match self.given_up {
-            true => format!("{found}, given up: the iteration broke down with them"),
-            false => found,
+        let found = if self.given_up {
+            format!("{found}, given up: the iteration broke down with them")
+        } else {
+            found
         };
         let mut out = format!("{found}, {:.3} s{without}", self.seconds);
         if let Some(first) = self.capped.first() {

@@ -85,14 +85,15 @@ impl Certified {
             return format!("no bound: {why}");
         };
         let part = if size > 0.0 { size } else { 1.0 };
-        match least > 0.0 {
-            true => format!(
+        if least > 0.0 {
+            format!(
                 "between {:.2e} and {:.2e} of the energy norm {size:.3e} ({} iterations)",
                 least / part,
                 most / part,
                 self.iterations
-            ),
-            false => format!("at most {:.2e} of the energy norm {size:.3e}", most / part),
+            )
+        } else {
+            format!("at most {:.2e} of the energy norm {size:.3e}", most / part)
         }
     }
 }

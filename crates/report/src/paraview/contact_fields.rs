@@ -130,9 +130,10 @@ impl ContactFields {
     /// The grid with the arrays attached as point data.
     #[must_use]
     pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {
-        let grid = match self.has_pressure {
-            true => grid.point_data("contact_pressure", 1, &self.pressure[..]),
-            false => grid,
+        let grid = if self.has_pressure {
+            grid.point_data("contact_pressure", 1, &self.pressure[..])
+        } else {
+            grid
         };
         let grid = match &self.smoothed {
             Some(smoothed) => grid.point_data("contact_pressure_smoothed", 1, &smoothed[..]),

@@ -143,9 +143,10 @@ impl Contact {
             .into_iter()
             .max_by(|a, b| norm(*a).total_cmp(&norm(*b)));
         let axis = longest.and_then(unit).unwrap_or([0.0, 0.0, 1.0]);
-        match dot(axis, away) < 0.0 {
-            true => axis.map(|x| -x),
-            false => axis,
+        if dot(axis, away) < 0.0 {
+            axis.map(|x| -x)
+        } else {
+            axis
         }
     }
 }

@@ -54,9 +54,10 @@ fn draw(
 ) -> Raster {
     let lines = mesh.lines(mesh.shown, displaced);
     // The outlines of undeformed bodies, below the fields.
-    let before = match displaced {
-        true => mesh.lines(mesh.points, true).bodies,
-        false => Vec::new(),
+    let before = if displaced {
+        mesh.lines(mesh.points, true).bodies
+    } else {
+        Vec::new()
     };
     let ends = before.iter().flatten();
     let [mut low, mut high] = bounds(mesh.shown.iter().chain(ends).copied());

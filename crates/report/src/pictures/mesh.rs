@@ -126,8 +126,9 @@ pub fn bounds<const D: usize>(points: impl Iterator<Item = [f64; D]>) -> [[f64; 
             std::array::from_fn(|d| high[d].max(p[d])),
         ]
     });
-    match (0..D).all(|d| low[d] <= high[d]) {
-        true => [low, high],
-        false => [[0.0; D], [1.0; D]],
+    if (0..D).all(|d| low[d] <= high[d]) {
+        [low, high]
+    } else {
+        [[0.0; D], [1.0; D]]
     }
 }

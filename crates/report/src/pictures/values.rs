@@ -114,9 +114,12 @@ impl<'a> Field<'a> {
     pub(super) fn colour(&self, range: (f64, f64)) -> impl Fn(f64) -> Colour {
         let scale = self.scale;
         let (low, high) = (scale.forward(range.0), scale.forward(range.1));
-        move |v| match scale.shows(v) {
-            true => viridis((scale.forward(v) - low) / (high - low)),
-            false => viridis(f64::NAN),
+        move |v| {
+            if scale.shows(v) {
+                viridis((scale.forward(v) - low) / (high - low))
+            } else {
+                viridis(f64::NAN)
+            }
         }
     }
 }

@@ -113,9 +113,10 @@ impl Profile {
         // closed contact.
         let (low, high) = extremes(&self.nodes.gap);
         let length = x.1 - x.0;
-        let closed = match self.nodes.has_pressure() {
-            true => CLOSED_IN_SPACE * length,
-            false => CLOSED * length,
+        let closed = if self.nodes.has_pressure() {
+            CLOSED_IN_SPACE * length
+        } else {
+            CLOSED * length
         };
         let y = if low > high || low.abs().max(high.abs()) <= closed {
             let top = if largest_gap > closed {

@@ -25,9 +25,10 @@ pub fn text(report: &BenchReport) -> String {
         cases.join("\n"),
         report.rounds,
         report.cores,
-        match report.cases.iter().any(|c| c.facts.contact.is_some()) {
-            true => " (with contact the whole loop; last set: only the equations of our last active set)",
-            false => "",
+        if report.cases.iter().any(|c| c.facts.contact.is_some()) {
+            " (with contact the whole loop; last set: only the equations of our last active set)"
+        } else {
+            ""
         },
         match &report.blas {
             Some(file) => format!("BLAS of all methods: {file}\n"),
@@ -176,9 +177,10 @@ pub fn figure(report: &BenchReport) -> Figure {
             let ends = vec![(total.min, error), (total.max, error)];
             series.push(Series::new("", ends, colour(row)).line_only());
             let given = row.run.set_given();
-            let name = match given {
-                true => format!("{} (set given)", label(row)),
-                false => label(row),
+            let name = if given {
+                format!("{} (set given)", label(row))
+            } else {
+                label(row)
             };
             series.push(
                 Series::new(name, vec![(total.median, error)], colour(row))

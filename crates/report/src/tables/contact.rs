@@ -229,19 +229,21 @@ fn sliding(r: &ContactReport) -> String {
     }
     if !far.is_empty() {
         let what = far.join(" and ");
-        text += &match r.updated {
-            false => format!(
-                "This is not small ({what}): normals, pairing and gaps are those of the undeformed bodies{}.\n",
-                match r.renewable {
-                    true => ". `[steps] update = true` renews them at each load step",
-                    // A deck has no such key, and neither has a contact on a part of a common face.
-                    false => ", and the answer holds for these",
-                }
-            ),
-            true => format!(
+        // A deck has no such key, and neither has a contact on a part of a common face.
+        let then = if r.renewable {
+            ". `[steps] update = true` renews them at each load step"
+        } else {
+            ", and the answer holds for these"
+        };
+        text += &if r.updated {
+            format!(
                 "Between two load steps this is not small ({what}): normals, pairing and gaps are those at the \
                  start of a load step. More load steps make it smaller.\n"
-            ),
+            )
+        } else {
+            format!(
+                "This is not small ({what}): normals, pairing and gaps are those of the undeformed bodies{then}.\n"
+            )
         };
     }
     text

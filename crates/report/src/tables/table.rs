@@ -156,13 +156,13 @@ impl fmt::Display for Table {
                 writeln!(out, "{rule}")?;
             }
             let columns = self.columns.iter().zip(&widths);
-            let padded = line
-                .iter()
-                .zip(columns)
-                .map(|(cell, (c, &w))| match c.words {
-                    true => format!("{cell:<w$}"),
-                    false => format!("{cell:>w$}"),
-                });
+            let padded = line.iter().zip(columns).map(|(cell, (c, &w))| {
+                if c.words {
+                    format!("{cell:<w$}")
+                } else {
+                    format!("{cell:>w$}")
+                }
+            });
             let text = padded.collect::<Vec<_>>().join("  ");
             writeln!(out, "{}", text.trim_end())?;
             if k == 0 {

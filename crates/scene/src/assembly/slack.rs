@@ -46,9 +46,10 @@ pub fn slack(
                 let c = *cell as usize;
                 let nodes = mesh.cells.nodes(c).iter();
                 let points: Vec<[f64; 3]> = nodes.map(|&k| place(k as usize)).collect();
-                match search.is_held((mesh.cells.kind(c), rule(c)), piece, &points) {
-                    true => Vec::new(),
-                    false => element::slack(form, mesh.cells.kind(c), &points, rule(c)),
+                if search.is_held((mesh.cells.kind(c), rule(c)), piece, &points) {
+                    Vec::new()
+                } else {
+                    element::slack(form, mesh.cells.kind(c), &points, rule(c))
                 }
             }
             _ => Vec::new(),
@@ -206,9 +207,10 @@ impl<'a> Search<'a> {
                     largest = largest.max(v.abs());
                 }
             }
-            match largest > NONE {
-                true => reaching.push((motion, values)),
-                false => rest.push(motion),
+            if largest > NONE {
+                reaching.push((motion, values))
+            } else {
+                rest.push(motion)
             }
         }
         let common: Vec<usize> = (0..nodes.len())

@@ -147,9 +147,10 @@ pub fn given_columns(mesh: &SubdomainMesh, cells: &Cells) -> Csr {
         col: Vec::new(),
         val: Vec::new(),
     };
-    let blocks = match mesh.prescribed.iter().any(|u| *u != 0.0) {
-        true => Some(Blocks::new(mesh, cells)),
-        false => None,
+    let blocks = if mesh.prescribed.iter().any(|u| *u != 0.0) {
+        Some(Blocks::new(mesh, cells))
+    } else {
+        None
     };
     for row in free_rows(mesh) {
         for (column, value) in blocks.iter().flat_map(|b| b.row(c, row / c, row % c)) {

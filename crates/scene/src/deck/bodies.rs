@@ -125,9 +125,10 @@ fn body(
 
 /// Values by cell; a constant where all are equal.
 fn by_cell(values: Vec<f64>) -> Field {
-    match values.iter().all(|v| *v == values[0]) {
-        true => Field::constant(values[0]),
-        false => Field::ByCell(Arc::new(values)),
+    if values.iter().all(|v| *v == values[0]) {
+        Field::constant(values[0])
+    } else {
+        Field::ByCell(Arc::new(values))
     }
 }
 

@@ -98,9 +98,10 @@ pub(super) fn contacts(
             pair: surfaces(deck, &pair.slave, &pair.master),
             sides: None,
             // Nodes of a slave of nodes may form no faces.
-            extent: match pair.slave.nodes {
-                true => singly(f64::INFINITY),
-                false => Extent::All,
+            extent: if pair.slave.nodes {
+                singly(f64::INFINITY)
+            } else {
+                Extent::All
             },
             gap: Profile::constant(pair.clearance.unwrap_or(0.0)),
             distance: None,

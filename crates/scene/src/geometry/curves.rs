@@ -28,9 +28,10 @@ fn in_a_plane(mesh: &CellMesh, nodes: &[usize]) -> Vec<[f64; 2]> {
     let at = |point: [f64; 3]| {
         [0, 1].map(|k| {
             let (low, length) = ranges[along[k]];
-            match length > 0.0 {
-                true => ((point[along[k]] - low) / length).clamp(0.0, 1.0),
-                false => 0.0,
+            if length > 0.0 {
+                ((point[along[k]] - low) / length).clamp(0.0, 1.0)
+            } else {
+                0.0
             }
         })
     };

@@ -44,9 +44,10 @@ pub(crate) fn coinciding(
             let pair = |&(node, x): &Placed| Some([node, twin(x)?]);
             let nodes = of_a.iter().filter_map(pair);
             let shared = share(&a.spec, sa, nodes.collect());
-            let shape = match is_face([a, b], [sa, sb], &shared) {
-                true => Shape::Face,
-                false => Shape::Corner,
+            let shape = if is_face([a, b], [sa, sb], &shared) {
+                Shape::Face
+            } else {
+                Shape::Corner
             };
             if shape == Shape::Face {
                 seen.extend(shared.iter().map(|s| s.nodes));

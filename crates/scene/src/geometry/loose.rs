@@ -58,9 +58,10 @@ pub(crate) fn sentences(
         let Some(common) = touch([&skins[&pair[0]], &skins[&pair[1]]]) else {
             continue;
         };
-        match out.len() < LIST {
-            true => out.push(sentence(pair.map(|b| &bodies[b]), &common, language)),
-            false => more += 1,
+        if out.len() < LIST {
+            out.push(sentence(pair.map(|b| &bodies[b]), &common, language))
+        } else {
+            more += 1
         }
     }
     if more > 0 {

@@ -94,10 +94,7 @@ impl Surfaces {
                 list.into_iter().map(node).collect()
             }
         });
-        let around = |x: [f64; 3]| match form.is_axial() {
-            true => form.around(x),
-            false => 1.0,
-        };
+        let around = |x: [f64; 3]| if form.is_axial() { form.around(x) } else { 1.0 };
         let left_out = |k: u32| {
             let node = self.nodes[0][k as usize];
             self.common.contains(&node) || excluded(node)

@@ -63,9 +63,10 @@ fn deepest(distances: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 fn beginning(names: &[String; 2], depth: f64, edge: f64, contact: bool) -> String {
-    let then = match contact {
-        true => "contact presses them apart; where that is not meant, `adjust` takes overlaps as touching",
-        false => "the tie keeps the overlap",
+    let then = if contact {
+        "contact presses them apart; where that is not meant, `adjust` takes overlaps as touching"
+    } else {
+        "the tie keeps the overlap"
     };
     let mut text = format!(
         "{} and {} overlap by {depth:.3e} to begin with, more than a tenth of the shortest edge of their faces \

@@ -62,9 +62,10 @@ impl Reached {
             [0, 1].map(|k| surface(specs[k], sides[order[k]], form.element));
         let feet = Feet::new(&other);
         let far_away = mortar::reach(&own, &other, f64::INFINITY);
-        let tolerance = match contact {
-            true => tolerance.min(far_away),
-            false => tolerance,
+        let tolerance = if contact {
+            tolerance.min(far_away)
+        } else {
+            tolerance
         };
         let normals = own.normals();
         let mut areas = areas(&bodies[pair[which]], form, sides[which], &nodes);

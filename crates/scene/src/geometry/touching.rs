@@ -75,14 +75,18 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
             ranges.join(" × "),
         )));
     }
-    let lines = [0, 1, 2].map(|d| match stretches[d] {
-        true => match_lines(meshes, d, low[d], high[d]),
-        false => {
+    let lines = [0, 1, 2].map(|d| {
+        if stretches[d] {
+            match_lines(meshes, d, low[d], high[d])
+        } else {
             // The boxes touch across this direction: the first one lies before the second if its origin is lower.
             let first_before = meshes[0].origin[d] < meshes[1].origin[d];
-            let line = |body: usize| match (body == 0) == first_before {
-                true => meshes[body].elements[d],
-                false => 0,
+            let line = |body: usize| {
+                if (body == 0) == first_before {
+                    meshes[body].elements[d]
+                } else {
+                    0
+                }
             };
             Lines {
                 pairs: vec![(low[d], line(0), line(1))],
@@ -113,12 +117,11 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
             }
         }
     }
-    let normals = match face {
-        true => {
-            let nodes: Vec<usize> = shared.iter().map(|s| s.nodes[0]).collect();
-            normals::of_side(&bodies[a].spec, sides[0], &nodes)
-        }
-        false => vec![[0.0; 3]; shared.len()],
+    let normals = if face {
+        let nodes: Vec<usize> = shared.iter().map(|s| s.nodes[0]).collect();
+        normals::of_side(&bodies[a].spec, sides[0], &nodes)
+    } else {
+        vec![[0.0; 3]; shared.len()]
     };
     Ok(Some(Interface {
         bodies: [a, b],

@@ -102,9 +102,10 @@ impl BodySlack {
         let mut free_rigid = Vec::new();
         let mut free = Vec::new();
         for (at, x) in vanishing(&units, &motions, &held) {
-            match at < units.len() {
-                true => free_rigid.push(x[..units.len()].to_vec()),
-                false => free.push(less(whole(&units, &motions, &x), &held)),
+            if at < units.len() {
+                free_rigid.push(x[..units.len()].to_vec())
+            } else {
+                free.push(less(whole(&units, &motions, &x), &held))
             }
         }
         let mut is_seen = vec![true; free.len()];

@@ -53,9 +53,10 @@ impl Motion {
 
     /// R x + t.
     pub fn apply(&self, x: [f64; 3]) -> [f64; 3] {
-        let turned = match self.is_shift() {
-            true => x,
-            false => self.turn.map(|row| dot(row, x)),
+        let turned = if self.is_shift() {
+            x
+        } else {
+            self.turn.map(|row| dot(row, x))
         };
         [0, 1, 2].map(|d| turned[d] + self.shift[d])
     }
@@ -63,9 +64,10 @@ impl Motion {
     /// Rᵀ (y − t).
     pub fn invert(&self, y: [f64; 3]) -> [f64; 3] {
         let back = [0, 1, 2].map(|d| y[d] - self.shift[d]);
-        match self.is_shift() {
-            true => back,
-            false => [0, 1, 2].map(|d| (0..3).map(|k| self.turn[k][d] * back[k]).sum()),
+        if self.is_shift() {
+            back
+        } else {
+            [0, 1, 2].map(|d| (0..3).map(|k| self.turn[k][d] * back[k]).sum())
         }
     }
 

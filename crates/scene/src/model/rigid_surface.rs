@@ -140,9 +140,10 @@ fn faces(file: &MeshFile, dim: usize, name: &str) -> Result<Vec<FileFace>> {
             };
             let names = file.groups.iter().filter(|g| is_surface(&g.members));
             let names: Vec<String> = names.take(12).map(|g| format!("`{}`", g.name)).collect();
-            let list = match names.is_empty() {
-                true => format!("there is no group of {wanted}"),
-                false => format!("groups of {wanted} are {}", names.join(", ")),
+            let list = if names.is_empty() {
+                format!("there is no group of {wanted}")
+            } else {
+                format!("groups of {wanted} are {}", names.join(", "))
             };
             return Err(Error::Input(format!(
                 "{} has no group `{name}` ({list})",

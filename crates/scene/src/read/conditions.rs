@@ -29,12 +29,13 @@ impl Groups {
 
     /// An error if what acts on faces is given at a group without a face.
     fn need_faces(&self, item: &Item, name: &str, key: &str) -> Result<()> {
-        match self.with_faces.contains(name) {
-            true => Ok(()),
-            false => item.error(format!(
-                "`{key}` at the boundary group `{name}`, of which no face is on the boundary of the body, so that it \
-                 would do nothing (a group of faces was expected)"
-            )),
+        if self.with_faces.contains(name) {
+            Ok(())
+        } else {
+            item.error(format!(
+            "`{key}` at the boundary group `{name}`, of which no face is on the boundary of the body, so that it \
+             would do nothing (a group of faces was expected)"
+        ))
         }
     }
 }
@@ -89,9 +90,10 @@ impl Reader {
         groups: &Groups,
     ) -> Result<OfGroups> {
         let mut out = OfGroups::default();
-        let keys: &[(&'static str, bool)] = match self.form.is_elastic() {
-            true => &[("traction", false), ("pressure", true)],
-            false => &[("flux", false)],
+        let keys: &[(&'static str, bool)] = if self.form.is_elastic() {
+            &[("traction", false), ("pressure", true)]
+        } else {
+            &[("flux", false)]
         };
         for &(key, is_pressure) in keys {
             let Some(list) = self.by_group(section, key, groups)? else {
@@ -99,12 +101,11 @@ impl Reader {
             };
             let force = |(name, item): (&str, &Item)| {
                 groups.need_faces(item, name, key)?;
-                let force = match is_pressure {
-                    true => Force::Pressure(self.formula(item)?),
-                    false => {
-                        let list = self.components(item)?.into_iter();
-                        Force::Traction(list.map(Field::Expression).collect())
-                    }
+                let force = if is_pressure {
+                    Force::Pressure(self.formula(item)?)
+                } else {
+                    let list = self.components(item)?.into_iter();
+                    Force::Traction(list.map(Field::Expression).collect())
                 };
                 Ok((name.to_string(), force))
             };

@@ -40,22 +40,28 @@ impl Reader {
         if let Some(element) = scene.read("element", |item| item.choice(&elements))? {
             form.element = element;
         }
-        let plane = scene.read("plane", |item| match !elastic || dim == 3 {
-            true => item.error("`plane` outside plane elasticity, where it says nothing"),
-            false => item.choice(&[
-                ("strain", Plane::Strain),
-                ("stress", Plane::Stress),
-                ("axisymmetric", Plane::Axial),
-            ]),
+        let plane = scene.read("plane", |item| {
+            if !elastic || dim == 3 {
+                item.error("`plane` outside plane elasticity, where it says nothing")
+            } else {
+                item.choice(&[
+                    ("strain", Plane::Strain),
+                    ("stress", Plane::Stress),
+                    ("axisymmetric", Plane::Axial),
+                ])
+            }
         })?;
         let locking = scene.take("locking");
-        let cure = locking.map(|item| match elastic {
-            false => item.error("`locking` outside elasticity, where nothing locks"),
-            true => item.choice(&[
-                ("none", Cure::None),
-                ("selective", Cure::Selective),
-                ("bbar", Cure::BBar),
-            ]),
+        let cure = locking.map(|item| {
+            if elastic {
+                item.choice(&[
+                    ("none", Cure::None),
+                    ("selective", Cure::Selective),
+                    ("bbar", Cure::BBar),
+                ])
+            } else {
+                item.error("`locking` outside elasticity, where nothing locks")
+            }
         });
         let (plane, cure) = (plane.unwrap_or_default(), cure.transpose()?);
         if elastic {

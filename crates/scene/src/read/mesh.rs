@@ -207,11 +207,14 @@ impl Reader {
         let mut section = item.section("[[body]]")?;
         let name = section.need("name", "the name of a group of cells")?;
         let name = name.text("the name of a group of cells")?;
-        let cut = section.read("subdomains", |item| match item.is("auto") {
-            true => Ok(Cut::Auto),
-            false => Ok(Cut::Into(
-                item.count("\"auto\" or a positive whole number")?,
-            )),
+        let cut = section.read("subdomains", |item| {
+            if item.is("auto") {
+                Ok(Cut::Auto)
+            } else {
+                Ok(Cut::Into(
+                    item.count("\"auto\" or a positive whole number")?,
+                ))
+            }
         })?;
         let rule = section.read("integration", integration)?;
         let parts = source.parts(item, &name)?;

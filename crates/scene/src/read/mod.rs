@@ -34,9 +34,12 @@ use values::MOST;
 pub fn read(file: &str, text: &str) -> Result<SceneSpec> {
     spec(file, text).map_err(|e| match e {
         Error::Input(said) if said.contains(char::is_control) => {
-            let shown = |c: char| match c.is_control() {
-                true => c.escape_default().to_string(),
-                false => c.to_string(),
+            let shown = |c: char| {
+                if c.is_control() {
+                    c.escape_default().to_string()
+                } else {
+                    c.to_string()
+                }
             };
             Error::Input(said.chars().map(shown).collect())
         }
@@ -297,9 +300,10 @@ impl Reader {
                     "both `elements` and `elements_per_subdomain` are given where one was expected",
                 ),
                 (None, None) => {
-                    let name = match grid {
-                        true => "of the grid".into(),
-                        false => format!("`{name}`"),
+                    let name = if grid {
+                        "of the grid".into()
+                    } else {
+                        format!("`{name}`")
                     };
                     return item.error(format!(
                         "body {name} has no `elements` (or `elements_per_subdomain`)"

@@ -34,9 +34,10 @@ impl Reader {
         let mut section = item.section("[[obstacle]]")?;
         let wanted = "\"all\" or the name of a body";
         let named = section.need("body", wanted)?;
-        let body = match named.is("all") {
-            true => None,
-            false => Some(body_name(named, bodies, wanted)?),
+        let body = if named.is("all") {
+            None
+        } else {
+            Some(body_name(named, bodies, wanted)?)
         };
         let meant: Vec<&BodySpec> = match &body {
             Some(name) => bodies.iter().filter(|b| fits(name, &b.name)).collect(),
@@ -67,24 +68,23 @@ impl Reader {
         let extent = self.extent(&mut section, item, "[[obstacle]]")?;
         let mut bound = |key| section.read(key, |item| self.profile(item));
         let elastic = self.form.is_elastic();
-        let (below, above, gap) = match elastic {
-            true => (None, None, bound("gap")?),
-            false => (bound("below")?, bound("above")?, None),
+        let (below, above, gap) = if elastic {
+            (None, None, bound("gap")?)
+        } else {
+            (bound("below")?, bound("above")?, None)
         };
-        let shape = match elastic {
-            true => self.rigid_shape(&mut section, item, bodies, source, &extent)?,
-            false => RigidShape::default(),
+        let shape = if elastic {
+            self.rigid_shape(&mut section, item, bodies, source, &extent)?
+        } else {
+            RigidShape::default()
         };
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
         let rigid = shape.rigid.is_some() || shape.surface.is_some();
         if below.is_none() && above.is_none() && !rigid {
-            return item.error(match elastic {
-                true => {
-                    "[[obstacle]] without a rigid body (`plane`, `cylinder`, `sphere` or `surface` was expected)"
-                }
-                false => "[[obstacle]] without a bound (`below`, `above` or both were expected)",
-            });
+            return item.error(if elastic {
+                "[[obstacle]] without a rigid body (`plane`, `cylinder`, `sphere` or `surface` was expected)"
+            } else { "[[obstacle]] without a bound (`below`, `above` or both were expected)" });
         }
         let gap = gap.unwrap_or_else(|| Profile::constant(0.0));
         let one = |(body, sides)| ObstacleSpec {
@@ -132,20 +132,22 @@ impl Reader {
         }
         let mut out = Vec::new();
         for body in bodies {
-            let sides: Vec<usize> = match names.iter().any(|n| n == "all") {
-                true => body.mesh.outer_sides().collect(),
-                false => names
+            let sides: Vec<usize> = if names.iter().any(|n| n == "all") {
+                body.mesh.outer_sides().collect()
+            } else {
+                names
                     .iter()
                     .filter_map(|n| body.mesh.side_of_name(n))
-                    .collect(),
+                    .collect()
             };
             if !sides.is_empty() {
                 out.push((Some(body.name.clone()), sides));
             }
         }
-        match out.is_empty() {
-            true => item.expected("a side, a list of them or \"all\""),
-            false => Ok(out),
+        if out.is_empty() {
+            item.expected("a side, a list of them or \"all\"")
+        } else {
+            Ok(out)
         }
     }
 

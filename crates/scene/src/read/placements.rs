@@ -28,9 +28,10 @@ impl Reader {
             }
             _ => return item.expected("a list of placements or the name of a file"),
         };
-        match list.is_empty() {
-            true => item.error("no placements where one at least was expected"),
-            false => Ok(list),
+        if list.is_empty() {
+            item.error("no placements where one at least was expected")
+        } else {
+            Ok(list)
         }
     }
 

@@ -37,9 +37,12 @@ impl Reader {
             ("half_ball", true, false),
             ("quarter_ball", true, true),
         ] {
-            found.extend(section.read(key, |item| match ball && self.dim == 2 {
-                true => item.error(format!("`{key}` in a plane scene")),
-                false => Ok(BodyShape::Round(self.round(item, ball, quarter)?)),
+            found.extend(section.read(key, |item| {
+                if ball && self.dim == 2 {
+                    item.error(format!("`{key}` in a plane scene"))
+                } else {
+                    Ok(BodyShape::Round(self.round(item, ball, quarter)?))
+                }
             })?);
         }
         section.finish()?;
@@ -80,9 +83,10 @@ impl Reader {
     fn round(&self, item: &Item, ball: bool, quarter: bool) -> Result<Round> {
         let mut section = item.section("this shape")?;
         let radius = self.positive(section.need("radius", "the radius")?)?;
-        let centre = section.read("centre", |item| match ball {
-            true => self.vector(item, "a point [x, y, z]"),
-            false => {
+        let centre = section.read("centre", |item| {
+            if ball {
+                self.vector(item, "a point [x, y, z]")
+            } else {
                 let [x, y] = self.pair(item, "a point [x, y]")?;
                 Ok([x, y, 0.0])
             }

@@ -76,12 +76,13 @@ impl Reader {
             Ok(Force::Traction(fields.collect()))
         };
         let pressure = |item: &Item| Ok(Force::Pressure(self.formula(item)?));
-        let found = match self.form.is_elastic() {
-            false => vec![section.read("flux", |i| self.by_side(i, "flux", traction))?],
-            true => vec![
+        let found = if self.form.is_elastic() {
+            vec![
                 section.read("traction", |i| self.by_side(i, "traction", traction))?,
                 section.read("pressure", |i| self.by_side(i, "pressure", pressure))?,
-            ],
+            ]
+        } else {
+            vec![section.read("flux", |i| self.by_side(i, "flux", traction))?]
         };
         for (kind, found) in found.into_iter().enumerate() {
             let Some(found) = found else { continue };

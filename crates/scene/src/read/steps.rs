@@ -60,9 +60,10 @@ impl Reader {
             }
             times.push(t);
         }
-        match times.is_empty() {
-            true => item.expected(wanted),
-            false => Ok(times),
+        if times.is_empty() {
+            item.expected(wanted)
+        } else {
+            Ok(times)
         }
     }
 
@@ -86,9 +87,10 @@ impl Reader {
             }
             table.push([t, value]);
         }
-        match table.is_empty() {
-            true => item.expected(wanted),
-            false => Ok(Profile::Table(table)),
+        if table.is_empty() {
+            item.expected(wanted)
+        } else {
+            Ok(Profile::Table(table))
         }
     }
 }

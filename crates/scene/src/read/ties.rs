@@ -141,9 +141,10 @@ impl Reader {
                     ),
                 });
             }
-            match bodies.iter().any(|b| has_faces(b, &name)) {
-                true => Ok(name),
-                false => item.error(self.no_faces(&name)),
+            if bodies.iter().any(|b| has_faces(b, &name)) {
+                Ok(name)
+            } else {
+                item.error(self.no_faces(&name))
             }
         };
         match item.list("a pair of boundary groups")? {

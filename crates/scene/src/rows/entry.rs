@@ -68,9 +68,10 @@ impl<'a> Entry<'a> {
 
 /// Two bodies in messages, or the two sides of one that touches itself.
 pub(crate) fn both(a: &str, b: &str) -> String {
-    match a == b {
-        true => format!("both sides of body `{a}`"),
-        false => format!("bodies `{a}` and `{b}`"),
+    if a == b {
+        format!("both sides of body `{a}`")
+    } else {
+        format!("bodies `{a}` and `{b}`")
     }
 }
 

@@ -59,9 +59,10 @@ pub(super) fn facing(
             ));
         }
         // The first body of the entry carries the multipliers, unless it says something else.
-        let (pair, sides, which) = match a <= b {
-            true => ([a, b], sides, entry.which),
-            false => ([b, a], [sides[1], sides[0]], 1 - entry.which),
+        let (pair, sides, which) = if a <= b {
+            ([a, b], sides, entry.which)
+        } else {
+            ([b, a], [sides[1], sides[0]], 1 - entry.which)
         };
         let is_contact = number >= spec.ties.len();
         let matched = entry.matched(bodies, &mut matching, pair, sides);
@@ -169,9 +170,10 @@ impl Named<'_> {
                     let Pair::Named(a, b) = self.pair else {
                         unreachable!("who names sides names bodies")
                     };
-                    let who = match a == b {
-                        true => format!("body `{a}`"),
-                        false => format!("bodies `{a}` and `{b}`"),
+                    let who = if a == b {
+                        format!("body `{a}`")
+                    } else {
+                        format!("bodies `{a}` and `{b}`")
                     };
                     Err(format!("the sides of {who} do not face each other"))
                 }

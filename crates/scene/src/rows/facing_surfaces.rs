@@ -76,9 +76,10 @@ pub(super) fn find(
     nodes: impl Iterator<Item = usize>,
 ) -> Option<Opposite> {
     let own = surface(spec, side, form.element);
-    let moved = match way == [0.0; 3] {
-        true => rigid.side.clone(),
-        false => Arc::new(rigid.side.moved(way)),
+    let moved = if way == [0.0; 3] {
+        rigid.side.clone()
+    } else {
+        Arc::new(rigid.side.moved(way))
     };
     let reach = reach.unwrap_or_else(|| {
         // Any distance.
@@ -228,12 +229,11 @@ impl Obstacle {
             let (known, direction) = self.ahead(node);
             // What counts as touching does.
             let adjusted = self.adjusted.get(&node).copied().unwrap_or_default();
-            let distance = match known == 0.0 {
-                true => 0.0,
-                false => {
-                    let far = row.distance(&bodies[body].spec, &|k| opposite.points[k], direction);
-                    far - dot(adjusted, direction)
-                }
+            let distance = if known == 0.0 {
+                0.0
+            } else {
+                let far = row.distance(&bodies[body].spec, &|k| opposite.points[k], direction);
+                far - dot(adjusted, direction)
             };
             let (mut terms, mut given) = (Vec::new(), 0.0);
             for &(k, v) in &row.own {

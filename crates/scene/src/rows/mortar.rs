@@ -46,9 +46,10 @@ pub(crate) fn collect(
                 continue;
             };
             let mut pair = Pairing::new(bodies, form, k, interface, surfaces);
-            let rows = |pair: &mut Pairing<'_>, held: &HashSet<BodyNode>| match contact {
-                false => pair.ties(held),
-                true => pair.contacts(held),
+            let rows = if contact {
+                Pairing::contacts
+            } else {
+                Pairing::ties
             };
             let mut found = rows(&mut pair, &tied);
             notes.extend(pair.note(contact, &tied));
@@ -258,10 +259,8 @@ impl<'a> Pairing<'a> {
                 [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec);
             let closed = self.interface.distances[i] == 0.0;
             let adjusted = self.interface.adjusted.get(&i).copied().unwrap_or(0.0);
-            let distance = match closed {
-                true => 0.0,
-                false => row.distance(own, &|k| other.undeformed(k), out) + adjusted,
-            };
+            let apart = || row.distance(own, &|k| other.undeformed(k), out) + adjusted;
+            let distance = if closed { 0.0 } else { apart() };
             self.carried(row, self.along(i), Some(distance))
         };
         rows.iter().map(contact).collect()
@@ -347,16 +346,20 @@ impl<'a> Pairing<'a> {
 
     /// Sentences on the nodes that carry no multiplier because they are tied elsewhere, or have given values.
     fn note(&self, contact: bool, tied: &HashSet<BodyNode>) -> Vec<String> {
-        let meant = |node: &usize| match contact {
-            true => self.link(*node).is_contact(),
-            false => self.link(*node) == Link::Tied,
+        let meant = |node: &usize| {
+            if contact {
+                self.link(*node).is_contact()
+            } else {
+                self.link(*node) == Link::Tied
+            }
         };
         let nodes = self.place.keys().copied().filter(meant);
         let (elsewhere, free): (Vec<usize>, Vec<usize>) =
             nodes.partition(|n| tied.contains(&self.carrier(*n)));
-        let given = free.iter().filter(|&&n| match contact {
-            true => self.is_given(n),
-            false => {
+        let given = free.iter().filter(|&&n| {
+            if contact {
+                self.is_given(n)
+            } else {
                 let given = |c| self.carrier(n).given(self.bodies, c).is_some();
                 (0..self.bodies[0].components).any(given)
             }

@@ -130,9 +130,10 @@ pub(crate) fn find(
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
         let elastic = entry.rigid.is_some() || entry.surface.is_some();
-        let bounds = match elastic {
-            false => [("below", false, below), ("above", true, above)],
-            true => [("", false, None), ("gap", true, Some(&entry.gap))],
+        let bounds = if elastic {
+            [("", false, None), ("gap", true, Some(&entry.gap))]
+        } else {
+            [("below", false, below), ("above", true, above)]
         };
         if bounds.iter().all(|(_, _, bound)| bound.is_none()) {
             return fail(
@@ -177,9 +178,10 @@ pub(crate) fn find(
             }
             if let Some(rigid) = &entry.rigid {
                 let nodes = || selected.iter().map(|s| s.0);
-                let opposite = match lacks_signs(&bodies[b], side, nodes()) {
-                    true => facing_surfaces::beneath(spec, form, side, (rigid, way), nodes()),
-                    false => None,
+                let opposite = if lacks_signs(&bodies[b], side, nodes()) {
+                    facing_surfaces::beneath(spec, form, side, (rigid, way), nodes())
+                } else {
+                    None
                 };
                 if let Some(opposite) = opposite {
                     near.clone_from(&opposite.nearest);

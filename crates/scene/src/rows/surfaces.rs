@@ -152,9 +152,12 @@ fn pairs(
 ) -> Result<Vec<Found>> {
     let lists = names.map(|name| with(bodies, name));
     let same = names[0] == names[1];
-    let fits = |first: &(usize, usize), second: &(usize, usize)| match first.0 == second.0 {
-        true => first.1 != second.1,
-        false => !(same && second.0 < first.0),
+    let fits = |first: &(usize, usize), second: &(usize, usize)| {
+        if first.0 == second.0 {
+            first.1 != second.1
+        } else {
+            !(same && second.0 < first.0)
+        }
     };
     // The last of all pairs, first body by first body: its sentence is told if none meets.
     let last = lists[0].iter().rev().find_map(|first| {
@@ -281,12 +284,13 @@ fn found(
             }
         }
     }
-    match out.is_empty() {
-        true => Err(Error::Input(format!(
-            "{}no two bodies are near each other with opposite normals (a larger `distance` was expected)",
-            auto.written
-        ))),
-        false => Ok(out),
+    if out.is_empty() {
+        Err(Error::Input(format!(
+        "{}no two bodies are near each other with opposite normals (a larger `distance` was expected)",
+        auto.written
+    )))
+    } else {
+        Ok(out)
     }
 }
 

@@ -122,9 +122,10 @@ impl Scene {
             point: carrier.position(&self.bodies),
             t: self.t(row.source, row.node),
             normal: row.direction,
-            area: match row.inequality.is_some() && self.has_pressure() {
-                true => row.area,
-                false => 0.0,
+            area: if row.inequality.is_some() && self.has_pressure() {
+                row.area
+            } else {
+                0.0
             },
         }
     }

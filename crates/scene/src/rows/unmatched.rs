@@ -64,9 +64,10 @@ pub(super) fn unmatched(
         }
         let (pair, sides) = (interface.bodies, interface.sides);
         contact |= which.is_none() && spec.default == ByDefault::Contact;
-        let reach = match contact && mortar::is_for_contact(bodies, interface) {
-            true => Some(near(matching, interface)),
-            false => loose(bodies, matching, interface),
+        let reach = if contact && mortar::is_for_contact(bodies, interface) {
+            Some(near(matching, interface))
+        } else {
+            loose(bodies, matching, interface)
         };
         let Some(reach) = reach else {
             continue;

@@ -13,9 +13,12 @@ fn simplices(dim: usize, n: usize) -> SubdomainMesh {
         let inner = (0..dim).all(|d| p[d] > 0 && p[d] < n);
         let wave = |d: usize| ((3 * p[d] + 5 * p[(d + 1) % dim] + 7 * d) as f64).sin();
         let shift = |d: usize| if inner { 0.15 * wave(d) } else { 0.0 };
-        [0, 1, 2].map(|d| match d < dim {
-            true => (p[d] as f64 + shift(d)) / n as f64,
-            false => 0.0,
+        [0, 1, 2].map(|d| {
+            if d < dim {
+                (p[d] as f64 + shift(d)) / n as f64
+            } else {
+                0.0
+            }
         })
     };
     let mut points: Vec<[f64; 3]> = Vec::new();

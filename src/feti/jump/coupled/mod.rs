@@ -75,14 +75,18 @@ impl Coupled {
             left.iter().for_each(|&r| kept[r as usize] = false);
             dependencies
         });
-        self.by_dofs = match self.steep {
-            true => ByDofs::new(&self.b, &IN_A.weights(&self.weights), &kept),
-            false => None,
+        self.by_dofs = if self.steep {
+            ByDofs::new(&self.b, &IN_A.weights(&self.weights), &kept)
+        } else {
+            None
         };
         if self.by_dofs.is_none() {
-            let new = || match self.steep {
-                true => ByRows::new(&self.b, &IN_G.weights(&self.weights)),
-                false => ByRows::new(&self.b, &self.weights),
+            let new = || {
+                if self.steep {
+                    ByRows::new(&self.b, &IN_G.weights(&self.weights))
+                } else {
+                    ByRows::new(&self.b, &self.weights)
+                }
             };
             let by_rows = self.by_rows.get_or_insert_with(new);
             by_rows.hold(&self.b, &kept, f64::EPSILON);
@@ -164,12 +168,11 @@ impl Coupled {
     /// B B⁺ c over the rows in `active`, in place. Returns whether that is another c.
     pub fn reconcile(&self, active: &[bool], c: &mut [f64]) -> bool {
         let own;
-        let dependencies = match active == self.active {
-            true => self.dependencies.as_ref(),
-            false => {
-                own = Dependencies::new(&self.b, active);
-                own.as_ref().map(|(dependencies, _)| dependencies)
-            }
+        let dependencies = if active == self.active {
+            self.dependencies.as_ref()
+        } else {
+            own = Dependencies::new(&self.b, active);
+            own.as_ref().map(|(dependencies, _)| dependencies)
         };
         dependencies.inspect(|d| d.project(c)).is_some()
     }

@@ -18,9 +18,10 @@ fn columns(bodies: usize, rows_of_body: usize) -> Vec<Column> {
             let values = &draw[(3 * body + c) * 3 * rows_of_body..];
             let entries = rows.clone().zip(values).map(|(r, v)| (r as u32, *v));
             out.push(Column {
-                entries: match body % 10 == 9 && c == 0 {
-                    true => out[3 * body - 1].entries.clone(),
-                    false => entries.collect(),
+                entries: if body % 10 == 9 && c == 0 {
+                    out[3 * body - 1].entries.clone()
+                } else {
+                    entries.collect()
                 },
                 reach: vec![body as u32],
             });

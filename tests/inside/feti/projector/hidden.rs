@@ -12,9 +12,10 @@ const BODIES: u32 = 100;
 
 /// Entry `c` of the motion that the rows do not hold; the last body moves by the part `slow`.
 fn free(slow: f64, c: u32) -> f64 {
-    match c / 2 == BODIES - 1 {
-        true => slow * (1.0 + f64::from(c % 2)),
-        false => 1.0 + 0.3 * f64::from(c % 3),
+    if c / 2 == BODIES - 1 {
+        slow * (1.0 + f64::from(c % 2))
+    } else {
+        1.0 + 0.3 * f64::from(c % 3)
     }
 }
 

@@ -6,17 +6,18 @@ use mesh::MeshFile;
 /// Poisson's equation on a plate with holes; elastic, if `elastic`. About a million unknowns, or 20,000.
 pub(super) fn plate(quick: bool, elastic: bool) -> String {
     let n = across(quick, elastic);
-    let (title, physics, values) = match elastic {
-        false => (
-            "Poisson's equation",
-            "",
-            "load = \"1 + x + y^2\"\ndirichlet = { left = 0, bottom = 0 }\n",
-        ),
-        true => (
+    let (title, physics, values) = if elastic {
+        (
             "Plane stress",
             "physics = \"elasticity\"\nplane = \"stress\"\n",
             "young = 1\npoisson = 0.3\ndirichlet = { left = 0 }\ntraction = { right = [1, 0.1] }\n",
-        ),
+        )
+    } else {
+        (
+            "Poisson's equation",
+            "",
+            "load = \"1 + x + y^2\"\ndirichlet = { left = 0, bottom = 0 }\n",
+        )
     };
     format!(
         "title = \"{title} on a plate with holes, {n} nodes along a side\"\n{physics}\n\
@@ -89,9 +90,10 @@ pub(super) fn rod_mesh(quick: bool, quadratic: bool) -> MeshFile {
 /// A block that is pressed on another one, with a gap that opens towards the far corner. About 300,000 unknowns, or
 /// 20,000.
 pub(super) fn blocks(mortar: bool) -> String {
-    let title = match mortar {
-        false => "meshes that match",
-        true => "edges in the ratio 2:3",
+    let title = if mortar {
+        "edges in the ratio 2:3"
+    } else {
+        "meshes that match"
     };
     let body = |name: &str, young: usize, rest: &str| {
         format!("\n[[body]]\nname = \"{name}\"\nyoung = {young}\npoisson = 0.3\n{rest}\n")
@@ -112,8 +114,9 @@ pub(super) fn blocks(mortar: bool) -> String {
 /// Their mesh. With edges in the ratio 2:3 there are about as many unknowns as with equal ones.
 pub(super) fn blocks_mesh(quick: bool, mortar: bool) -> MeshFile {
     let edge = if quick { 1.0 / 18.0 } else { 1.0 / 43.0 };
-    shapes::blocks(match mortar {
-        false => [edge; 2],
-        true => [1.3 * edge, 1.3 * edge / 1.5],
+    shapes::blocks(if mortar {
+        [1.3 * edge, 1.3 * edge / 1.5]
+    } else {
+        [edge; 2]
     })
 }

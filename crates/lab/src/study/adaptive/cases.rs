@@ -191,13 +191,15 @@ fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size)
         let words: Vec<String> = numbers.iter().map(usize::to_string).collect();
         words.join(", ")
     };
-    let (physics, key) = match problem.elastic() {
-        true => ("elasticity", "young"),
-        false => ("scalar", "rho"),
+    let (physics, key) = if problem.elastic() {
+        ("elasticity", "young")
+    } else {
+        ("scalar", "rho")
     };
-    let title = match contact {
-        true => format!("{}, contact", field.title()),
-        false => field.title(),
+    let title = if contact {
+        format!("{}, contact", field.title())
+    } else {
+        field.title()
     };
     let mut text = format!(
         "title = \"{name}\"\ndimension = {dim}\nphysics = \"{physics}\"\n\
@@ -208,9 +210,10 @@ fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size)
         size.elements,
         list(&cells[..dim]),
     );
-    text += match contact {
-        true => pressed(problem),
-        false => pulled(problem),
+    text += if contact {
+        pressed(problem)
+    } else {
+        pulled(problem)
     };
     if contact {
         text += &format!("size = [1, {}]\n", 2.0 / size.bodies as f64);
@@ -242,12 +245,11 @@ fn pulled(problem: Problem) -> &'static str {
 /// Two rows of bodies in contact: the upper row is pressed onto the lower one on the left, where its load is heavier,
 /// and lifted on the right.
 fn pressed(problem: Problem) -> &'static str {
-    match problem.elastic() {
-        false => "dirichlet = [\"bottom\"]\nload = \"if(x < 0.7, -2, 1)\"\n",
-        true => {
-            "dirichlet = { bottom = 0, left = { x = 0 }, right = { x = 0 } }\n\
-             load = [\"0.2*y\", \"if(x < 0.7, -2, 0.5)\"]\n"
-        }
+    if problem.elastic() {
+        "dirichlet = { bottom = 0, left = { x = 0 }, right = { x = 0 } }\n\
+         load = [\"0.2*y\", \"if(x < 0.7, -2, 0.5)\"]\n"
+    } else {
+        "dirichlet = [\"bottom\"]\nload = \"if(x < 0.7, -2, 1)\"\n"
     }
 }
 

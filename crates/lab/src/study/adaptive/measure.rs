@@ -191,10 +191,11 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     let facts = solver.facts();
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
     let small = |s: &fetifeti::Spectrum| s.kappa() < ESTIMATED;
-    let exact = match record.multipliers <= effort.plain && solution.estimate.iter().all(small) {
+    let exact = if record.multipliers <= effort.plain && solution.estimate.iter().all(small) {
         // If the eigensolver fails, the solution remains valid.
-        true => solver.plain_spectrum().ok().flatten(),
-        false => None,
+        solver.plain_spectrum().ok().flatten()
+    } else {
+        None
     };
     record.plain = Plain {
         exact: exact.map(|s| s.kappa()),

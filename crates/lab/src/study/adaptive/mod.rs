@@ -241,19 +241,20 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<AdaptiveReport> {
     super::alone(session, "adaptive", "it starts PCBDDC on ranks of its own")?;
-    let effort = match quick {
-        false => Effort {
-            taus: &TAUS,
-            repeats: 3,
-            patience: 15,
-            plain: 20_000,
-        },
-        true => Effort {
+    let effort = if quick {
+        Effort {
             taus: &TAUS[1..2],
             repeats: 1,
             patience: 0,
             plain: 1200,
-        },
+        }
+    } else {
+        Effort {
+            taus: &TAUS,
+            repeats: 3,
+            patience: 15,
+            plain: 20_000,
+        }
     };
     let mut records = Vec::new();
     let meshes = if quick { Meshes::Quick } else { Meshes::Small };

@@ -14,9 +14,12 @@ pub fn table(report: &AdaptiveReport) -> Table {
         let ran = r.bddc.as_ref().filter(|b| b.iterations.is_some());
         ran.map(|b| b.seconds)
     };
-    let verdict = |r: &AdaptiveRun| match r.fails.is_empty() {
-        true => "OK".to_string(),
-        false => r.fails.join("; "),
+    let verdict = |r: &AdaptiveRun| {
+        if r.fails.is_empty() {
+            "OK".to_string()
+        } else {
+            r.fails.join("; ")
+        }
     };
     let runs = report
         .cases

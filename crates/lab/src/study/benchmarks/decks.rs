@@ -211,9 +211,10 @@ fn distance(ours: &[Table], theirs: &[Table]) -> f64 {
             }
         }
     }
-    match ours.len() == theirs.len() && !theirs.is_empty() {
-        true => worst,
-        false => f64::NAN,
+    if ours.len() == theirs.len() && !theirs.is_empty() {
+        worst
+    } else {
+        f64::NAN
     }
 }
 

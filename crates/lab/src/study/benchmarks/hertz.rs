@@ -69,9 +69,10 @@ fn pair(radius: f64, spheres: bool) -> Pair {
 
 /// Edges in the contact, relative to the half-width, by order.
 fn edges(quick: bool) -> [&'static [f64]; 2] {
-    match quick {
-        true => [&[0.25, 0.125, 0.0625], &[0.5, 0.25, 0.125]],
-        false => [&[0.125, 0.0625, 0.03125], &[0.25, 0.125, 0.0625]],
+    if quick {
+        [&[0.25, 0.125, 0.0625], &[0.5, 0.25, 0.125]]
+    } else {
+        [&[0.125, 0.0625, 0.03125], &[0.25, 0.125, 0.0625]]
     }
 }
 
@@ -98,9 +99,10 @@ fn plane(
             let mesh = roller.mesh(&file, edge, order);
             // The vertical force of a pressure on a curve is the pressure times the width of the curve.
             let pressure = 0.5 * force / roller.load;
-            let title = match roller.whole {
-                true => "Roller on a block",
-                false => "Cylinder on a block",
+            let title = if roller.whole {
+                "Roller on a block"
+            } else {
+                "Cylinder on a block"
             };
             let text = scene_of(title, 2, &file, pressure, YOUNG, multipliers);
             let run = runner.solve_mesh(&stem, &text, &mesh)?;
@@ -141,9 +143,10 @@ pub fn sphere(runner: &mut Runner) -> Result<Vec<Series>> {
         curve: 0.15,
         fit,
     });
-    let edges: [&[f64]; 2] = match runner.quick {
-        true => [&[0.5, 0.35], &[1.0]],
-        false => [&[0.5, 0.35, 0.25], &[1.0, 0.7, 0.5]],
+    let edges: [&[f64]; 2] = if runner.quick {
+        [&[0.5, 0.35], &[1.0]]
+    } else {
+        [&[0.5, 0.35, 0.25], &[1.0, 0.7, 0.5]]
     };
     let mut out = Vec::new();
     for (order, edges) in [1, 2].into_iter().zip(edges) {

@@ -129,9 +129,12 @@ impl Roller {
         };
         let fine = size(edge / RATIO, r * edge.min(0.5));
         // The load at the top of a whole cylinder is resolved, too.
-        let upper = |p: [f64; 2]| match self.whole {
-            true => fine(p).min(0.5 * edge.min(0.5) * ((p[0]).hypot(p[1] - 2.0 * r) + load)),
-            false => fine(p),
+        let upper = |p: [f64; 2]| {
+            if self.whole {
+                fine(p).min(0.5 * edge.min(0.5) * ((p[0]).hypot(p[1] - 2.0 * r) + load))
+            } else {
+                fine(p)
+            }
         };
         let centre = [0.0, r];
         let mut outline = Vec::new();

@@ -58,9 +58,10 @@ pub fn table(case: &CaseReport) -> Table {
     let (names, rows) = cells(case);
     let mut columns = Table::of(rows);
     for (k, name) in names.into_iter().enumerate() {
-        columns = match k < 2 {
-            true => columns.words(name, |row| row[k].clone()),
-            false => columns.numbers(name, |row| row[k].clone()),
+        columns = if k < 2 {
+            columns.words(name, |row| row[k].clone())
+        } else {
+            columns.numbers(name, |row| row[k].clone())
         };
     }
     columns.table()
@@ -97,9 +98,10 @@ pub fn text(report: &BenchmarksReport) -> String {
         );
     }
     let missed = report.missed();
-    out += &match missed.is_empty() {
-        true => "All tolerances are kept.\n".to_string(),
-        false => format!("Tolerances that are missed:\n{}\n", missed.join("\n")),
+    out += &if missed.is_empty() {
+        "All tolerances are kept.\n".to_string()
+    } else {
+        format!("Tolerances that are missed:\n{}\n", missed.join("\n"))
     };
     out
 }

@@ -48,9 +48,10 @@ impl Rounded {
             return 0.0;
         }
         // The terms have a limit where the flat part ends, not a value.
-        let x = match (x / self.flat - 1.0).abs() < 1e-9 {
-            true => self.flat * (1.0 - 1e-9),
-            false => x,
+        let x = if (x / self.flat - 1.0).abs() < 1e-9 {
+            self.flat * (1.0 - 1e-9)
+        } else {
+            x
         };
         let (phi0, phi) = ((self.flat / self.a).asin(), (x / self.a).asin());
         let (sum, difference) = (phi + phi0, phi - phi0);
@@ -77,9 +78,10 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
         extent: 200.0,
         a: theory.a,
     };
-    let edges: [&[f64]; 2] = match runner.quick {
-        true => [&[0.25, 0.125, 0.0625], &[0.5, 0.25, 0.125]],
-        false => [&[0.125, 0.0625, 0.03125], &[0.25, 0.125, 0.0625]],
+    let edges: [&[f64]; 2] = if runner.quick {
+        [&[0.25, 0.125, 0.0625], &[0.5, 0.25, 0.125]]
+    } else {
+        [&[0.125, 0.0625, 0.03125], &[0.25, 0.125, 0.0625]]
     };
     let mut out = Vec::new();
     for (order, edges) in [1, 2].into_iter().zip(edges) {

@@ -72,15 +72,15 @@ impl Rings {
             )
         };
         let [mean, wave] = self.load.map(|p| p * units.stress);
-        let load = match mean == 0.0 {
-            true => String::new(),
-            false => {
-                format!("pressure = {{ right = \"{mean} + {wave}*(x^2 - y^2)/(x^2 + y^2)\" }}\n")
-            }
+        let load = if mean == 0.0 {
+            String::new()
+        } else {
+            format!("pressure = {{ right = \"{mean} + {wave}*(x^2 - y^2)/(x^2 + y^2)\" }}\n")
         };
-        let gap = match self.interference == 0.0 {
-            true => String::new(),
-            false => format!("gap = {}\n", -self.interference * units.length),
+        let gap = if self.interference == 0.0 {
+            String::new()
+        } else {
+            format!("gap = {}\n", -self.interference * units.length)
         };
         format!(
             "title = \"Two rings\"\nphysics = \"elasticity\"\norder = {order}\n{}{}{load}\n\

@@ -14,9 +14,10 @@ const HEIGHT: f64 = 0.5;
 /// Stacks of blocks in the plane and in space.
 pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
     let mut out = Vec::new();
-    let counts: [&[usize]; 2] = match runner.quick {
-        true => [&[10], &[5]],
-        false => [&[10, 20, 40], &[5, 10, 20]],
+    let counts: [&[usize]; 2] = if runner.quick {
+        [&[10], &[5]]
+    } else {
+        [&[10, 20, 40], &[5, 10, 20]]
     };
     for (dim, counts) in [2, 3].into_iter().zip(counts) {
         let mut list = Vec::new();

@@ -18,9 +18,10 @@ use fetifeti::feti::projector::gram::FEW;
 /// Projections in an iteration: P and Pᵀ around F and around M⁻¹, each with an all-reduce of r numbers; or of many
 /// motions Pᵀ after F and P after M⁻¹, each with messages up and down the tree.
 fn projections(r: f64) -> f64 {
-    match r > FEW as f64 {
-        true => 2.0,
-        false => 4.0 * any(r),
+    if r > FEW as f64 {
+        2.0
+    } else {
+        4.0 * any(r)
     }
 }
 
@@ -231,9 +232,10 @@ fn beyond(cache: f64, work: &Work) -> f64 {
     let r = work.kernels;
     let dense = 8.0 * (work.interface_squares + work.lifting_squares);
     let bytes = dense + FILL * r * (r + 1.0).log2();
-    match bytes > cache {
-        true => 1.0 - cache / bytes,
-        false => 0.0,
+    if bytes > cache {
+        1.0 - cache / bytes
+    } else {
+        0.0
     }
 }
 

@@ -144,14 +144,18 @@ fn measured_phases(report: &ScalingReport) -> Panel {
 fn predicted(report: &ScalingReport, iteration: bool) -> Panel {
     let rows = &report.predictions[0].rows;
     let mut series = Vec::new();
-    let names: Vec<&str> = match iteration {
-        true => IterationSeconds::NAMES.to_vec(),
-        false => SetupSeconds::NAMES.to_vec(),
+    let names: Vec<&str> = if iteration {
+        IterationSeconds::NAMES.to_vec()
+    } else {
+        SetupSeconds::NAMES.to_vec()
     };
     for (k, name) in names.iter().enumerate() {
-        let of = |row: &super::PredictedRow| match iteration {
-            true => 1e3 * row.seconds.iteration.all()[k],
-            false => row.seconds.setup.all()[k],
+        let of = |row: &super::PredictedRow| {
+            if iteration {
+                1e3 * row.seconds.iteration.all()[k]
+            } else {
+                row.seconds.setup.all()[k]
+            }
         };
         let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.ranks as f64, of(r))).collect();
         if points.iter().any(|p| p.1 > 0.0) {
@@ -159,9 +163,10 @@ fn predicted(report: &ScalingReport, iteration: bool) -> Panel {
             series.push(line.line_only());
         }
     }
-    let (title, y) = match iteration {
-        true => ("Predicted iteration", "milliseconds per iteration"),
-        false => ("Predicted set-up", "seconds"),
+    let (title, y) = if iteration {
+        ("Predicted iteration", "milliseconds per iteration")
+    } else {
+        ("Predicted set-up", "seconds")
     };
     let x = Axis::new("ranks, a body on each", Scale::Log);
     Panel::new(title, x, Axis::new(y, Scale::Log), series)

@@ -85,9 +85,10 @@ pub fn scene(family: &Family, jump: f64, seed: usize) -> String {
     // The same loads and gaps for every jump.
     let mut random = Random(seed as u64);
     let dim = family.bodies.len();
-    let (physics, coefficient) = match family.elastic {
-        true => ("physics = \"elasticity\"\n", "young"),
-        false => ("", "rho"),
+    let (physics, coefficient) = if family.elastic {
+        ("physics = \"elasticity\"\n", "young")
+    } else {
+        ("", "rho")
     };
     let field = |random: &mut Random| {
         format!(
@@ -101,22 +102,21 @@ pub fn scene(family: &Family, jump: f64, seed: usize) -> String {
             random.between(0.0, 6.0),
         )
     };
-    let (load, dirichlet) = match family.elastic {
-        false => (
+    let (load, dirichlet) = if family.elastic {
+        // All sides are held in their normal direction, the lid presses: no body can leave.
+        let load: Vec<String> = (0..dim)
+            .map(|_| format!("\"0.01*{}\"", field(&mut random)))
+            .collect();
+        let sides = [
+            "bottom = 0, top = { y = -0.3 }, left = { x = 0 }, right = { x = 0 }",
+            ", front = { z = 0 }, back = { z = 0 }",
+        ];
+        (format!("[{}]", load.join(", ")), sides[..dim - 1].concat())
+    } else {
+        (
             format!("\"{}\"", field(&mut random)),
             "bottom = 0, right = 0".to_string(),
-        ),
-        // All sides are held in their normal direction, the lid presses: no body can leave.
-        true => {
-            let load: Vec<String> = (0..dim)
-                .map(|_| format!("\"0.01*{}\"", field(&mut random)))
-                .collect();
-            let sides = [
-                "bottom = 0, top = { y = -0.3 }, left = { x = 0 }, right = { x = 0 }",
-                ", front = { z = 0 }, back = { z = 0 }",
-            ];
-            (format!("[{}]", load.join(", ")), sides[..dim - 1].concat())
-        }
+        )
     };
     let (bodies, elements) = (family.bodies, if dim == 2 { 4 } else { 2 });
     let mut text = format!(

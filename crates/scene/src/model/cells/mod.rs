@@ -265,9 +265,10 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 
 fn widen([low, high]: [f64; 2], value: f64) -> [f64; 2] {
     // `min` and `max` ignore a NaN.
-    match value.is_nan() || low.is_nan() {
-        true => [f64::NAN; 2],
-        false => [low.min(value), high.max(value)],
+    if value.is_nan() || low.is_nan() {
+        [f64::NAN; 2]
+    } else {
+        [low.min(value), high.max(value)]
     }
 }
 

@@ -106,9 +106,12 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
     let mut out = Vec::with_capacity(size[0] * size[1]);
     let pixels = bytes[..frame.buffer_size()].chunks_exact(step * channels);
     for (k, pixel) in pixels.enumerate() {
-        let sample = |c: usize| match wide {
-            true => u16::from_be_bytes([pixel[2 * c], pixel[2 * c + 1]]),
-            false => u16::from(pixel[c]),
+        let sample = |c: usize| {
+            if wide {
+                u16::from_be_bytes([pixel[2 * c], pixel[2 * c + 1]])
+            } else {
+                u16::from(pixel[c])
+            }
         };
         // Messages count from the upper left corner, as image programs do.
         let bad = |what: String| {
