@@ -34,7 +34,7 @@ mod smalbe;
 mod springs;
 mod state;
 
-pub use settings::{ContactSettings, ContactStart, ContactType};
+pub use settings::{ContactSettings, ContactType};
 pub use state::{Observer, Progress, State, Step};
 
 use crate::feti::krylov::loads::Loads;

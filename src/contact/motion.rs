@@ -12,7 +12,6 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::rigid::First;
 use crate::contact::rigid;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
@@ -107,30 +106,6 @@ fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]
         }
     };
     pushed_away(problem, dual, &rest, tolerance * size)
-}
-
-/// A first λ and a first set from rigid bodies on springs at the rows, which are as stiff as the nodes there. `None` if
-/// it is not decided whether springs carry the load: the loop then begins as if nobody had asked. Collective.
-///
-/// # Errors
-/// Bodies that the load moves away for ever; PETSc's own errors.
-pub fn first(
-    problem: &Substructures,
-    dual: &Dual,
-    load: &KernelLoad,
-) -> Result<Option<(Vec<f64>, Vec<bool>)>> {
-    let jump = &dual.stiffness.jump;
-    let mut stiff = dual.stiffness.compliance_of_rows(problem)?;
-    let rows = stiff.iter_mut().filter(|c| **c > 0.0);
-    rows.for_each(|c| *c = 1.0 / *c);
-    let size = load.largest;
-    let law = (stiff, jump.gap.clone());
-    let (e, enough) = (&load.e[..], 0.1 * NEARLY * size);
-    match rigid::first(dual.comm(), &dual.natural, jump, (e, enough), &law) {
-        First::At(lambda, active) => Ok(Some((lambda, active))),
-        First::Nowhere(rest) => pushed_away(problem, dual, &rest, NEARLY * size).map(|()| None),
-        First::Unknown => Ok(None),
-    }
 }
 
 /// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above

@@ -1,19 +1,18 @@
 //! The balance of the load by rigid bodies on unilateral springs: whether the rows can carry the load at all, for many
-//! rigid motions, and a first λ for the loop.
+//! rigid motions.
 //!
 //! ```text
-//!     min_α  ½ Σ_I k_i (g_iᵀα − c_i)₊² + ½ Σ_E k_i (g_iᵀα − c_i)² + ½ ε ‖α − a‖²_D − eᵀα,        D = diag Gᵀ k G
+//!     min_α  ½ Σ_I (g_iᵀα − c_i)₊² + ½ Σ_E (g_iᵀα − c_i)² + ½ ε ‖α − a‖²_D − eᵀα,        D = diag Gᵀ G
 //! ```
 //!
-//! At the minimum λ_i = k_i (g_iᵀα − c_i)₊ is a force that the rows can exert, and e − Gᵀλ = ε D (α − a) is what they
+//! At the minimum λ_i = (g_iᵀα − c_i)₊ is a force that the rows can exert, and e − Gᵀλ = ε D (α − a) is what they
 //! do not carry. The function is convex and piecewise quadratic: Newton's method with the sparse factor of
-//! G_Aᵀ k G_A + ε D ends after some steps. Then a ← α, which takes the rest to zero if the rows can carry the load. If
+//! G_Aᵀ G_A + ε D ends after some steps. Then a ← α, which takes the rest to zero if the rows can carry the load. If
 //! they cannot, α − a tends to a motion that all rows allow and the load drives.
 //!
-//! To the question whether the rows can carry the load neither k nor c matters: k = 1, and c = −λ₊ for the λ of the
-//! loop that asks. Its springs carry at α = 0 what the loop has found, and a few Newton steps take the rest from rows
-//! that pull to others. The first λ has the gaps of the rows, and k_i is the stiffness of the nodes at a row: the
-//! solution for bodies that give way at their surfaces alone.
+//! To the question whether the rows can carry the load neither the stiffness of the springs nor c matters: it is 1, and
+//! c = −λ₊ for the λ of the loop that asks. Its springs carry at α = 0 what the loop has found, and a few Newton steps
+//! take the rest from rows that pull to others.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -21,7 +20,6 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::natural::NaturalCoarse;
-use crate::feti::projector::rows::Rows;
 use parallel::exchange::{any, sum_all};
 
 /// The last ε. Rounding of the factor is 1e-16, the softest motions of a thousand bodies in a row are 1e-6.
@@ -62,51 +60,12 @@ pub fn outside(
         .map(|p| -pushes(p))
         .collect();
     let begun = any(comm, pre.iter().any(|c| *c != 0.0));
-    let law = (vec![1.0; jump.n_owned], pre);
-    let mut springs = Springs::new(comm, natural, jump, e, &law);
+    let mut springs = Springs::new(comm, natural, jump, e, &pre);
     match springs.balance(enough, begun) {
-        (_, Balanced::Carried) => Some(Motion::default()),
-        (_, Balanced::Driven(away)) => Some(away),
-        (_, Balanced::Undecided) => None,
+        Balanced::Carried => Some(Motion::default()),
+        Balanced::Driven(away) => Some(away),
+        Balanced::Undecided => None,
     }
-}
-
-/// Where a loop may begin.
-pub enum First {
-    /// The forces of the springs, on the owned rows, and whether a row may hold: those whose spring pushes, and those
-    /// that no rigid motion reaches.
-    At(Vec<f64>, Vec<bool>),
-    /// The rows cannot carry this part of the load.
-    Nowhere(Motion),
-    /// It is not decided whether they can.
-    Unknown,
-}
-
-/// The balance of the load by springs with this `law`: stiffness and gap of each owned row. The same decision on every
-/// rank. Collective.
-pub fn first(
-    comm: &SimpleCommunicator,
-    natural: &NaturalCoarse,
-    jump: &Jump,
-    (e, enough): (&[f64], f64),
-    law: &(Vec<f64>, Vec<f64>),
-) -> First {
-    let mut springs = Springs::new(comm, natural, jump, e, law);
-    let alpha = match springs.balance(enough, false) {
-        (alpha, Balanced::Carried) => alpha,
-        (_, Balanced::Driven(away)) => return First::Nowhere(away),
-        (_, Balanced::Undecided) => return First::Unknown,
-    };
-    let stretch = springs.stretch(&alpha);
-    let (mut lambda, mut active) = (vec![0.0; jump.n_owned], jump.initial.clone());
-    for (k, &i) in springs.rows.iter().enumerate() {
-        let reached = !natural.all.entries(i).0.is_empty();
-        active[i] = !reached || springs.pulls(k, stretch[k]);
-        if reached && active[i] {
-            lambda[i] = springs.law.0[i] * stretch[k];
-        }
-    }
-    First::At(lambda, active)
 }
 
 /// Whether springs carry a load.
@@ -124,10 +83,8 @@ struct Springs<'a> {
     jump: &'a Jump,
     /// The owned rows that may hold.
     rows: Vec<usize>,
-    /// Stiffness and gap of the owned rows, k and c.
-    law: &'a (Vec<f64>, Vec<f64>),
-    /// k G.
-    stiff: Rows,
+    /// The gaps of the owned rows, c.
+    gap: &'a [f64],
     e: &'a [f64],
     /// ε D.
     weak: Vec<f64>,
@@ -139,7 +96,7 @@ impl<'a> Springs<'a> {
         natural: &'a NaturalCoarse,
         jump: &'a Jump,
         e: &'a [f64],
-        law: &'a (Vec<f64>, Vec<f64>),
+        gap: &'a [f64],
     ) -> Springs<'a> {
         let between = jump.rows_between_bodies();
         let rows: Vec<usize> = between.filter(|&i| jump.is_candidate(i)).collect();
@@ -148,7 +105,7 @@ impl<'a> Springs<'a> {
         for &i in &rows {
             let (columns, values) = natural.all.entries(i);
             for (&c, g) in columns.iter().zip(values) {
-                weak[c as usize] += WEAK * law.0[i] * g * g;
+                weak[c as usize] += WEAK * g * g;
             }
         }
         known.sum(comm, &mut weak);
@@ -158,23 +115,19 @@ impl<'a> Springs<'a> {
         for w in weak.iter_mut().filter(|w| **w == 0.0) {
             *w = if mean > 0.0 { mean } else { 1.0 };
         }
-        let mut stiff = natural.all.clone();
-        stiff.scale_rows(&law.0);
         Springs {
             comm,
             natural,
             jump,
             rows,
-            law,
-            stiff,
+            gap,
             e,
             weak,
         }
     }
 
-    /// The motion α at which springs carry the load up to `enough`, if they can. `begun` says that they nearly do at
-    /// α = 0. Collective.
-    fn balance(&mut self, enough: f64, begun: bool) -> (Vec<f64>, Balanced) {
+    /// Whether springs carry the load up to `enough`. `begun` says that they nearly do at α = 0. Collective.
+    fn balance(&mut self, enough: f64, begun: bool) -> Balanced {
         let known = self.natural.known();
         let (mut alpha, mut anchor) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         let weak = self.weak.clone();
@@ -187,22 +140,22 @@ impl<'a> Springs<'a> {
             let rest: Vec<f64> = along.iter().zip(&self.weak).map(|(a, w)| a * w).collect();
             let is_little = rest.iter().all(|v| v.abs() <= enough);
             if !any(self.comm, !is_little) {
-                return (alpha, Balanced::Carried);
+                return Balanced::Carried;
             }
             // While ε is large, bodies move that will come to rest.
             let away = (softer == 1.0).then(|| self.allowed(&along)).flatten();
             if let Some(away) = away {
-                return (alpha, Balanced::Driven(away));
+                return Balanced::Driven(away);
             }
             anchor.clone_from(&alpha);
         }
-        (alpha, Balanced::Undecided)
+        Balanced::Undecided
     }
 
     /// g_iᵀα − c_i of the rows that may hold.
     fn stretch(&self, alpha: &[f64]) -> Vec<f64> {
         let along = self.along(alpha);
-        let gaps = self.rows.iter().map(|&i| self.law.1[i]);
+        let gaps = self.rows.iter().map(|&i| self.gap[i]);
         along.iter().zip(gaps).map(|(s, c)| s - c).collect()
     }
 
@@ -241,7 +194,7 @@ impl<'a> Springs<'a> {
                 .iter()
                 .zip(&on)
                 .for_each(|(&i, on)| chosen[i] = *on);
-            let mut a = shape.product(self.comm, all, &self.stiff, |i| chosen[i]);
+            let mut a = shape.product(self.comm, all, all, |i| chosen[i]);
             for c in (0..a.n()).filter(|&c| shape.has(c)) {
                 a.set_diagonal(c, a.get(c, c) + self.weak[c]);
             }
@@ -268,7 +221,7 @@ impl<'a> Springs<'a> {
         let mut force = vec![0.0; alpha.len()];
         for (k, &i) in self.rows.iter().enumerate() {
             if self.pulls(k, stretch[k]) {
-                let (columns, values) = self.stiff.entries(i);
+                let (columns, values) = self.natural.all.entries(i);
                 for (&c, g) in columns.iter().zip(values) {
                     force[c as usize] += g * stretch[k];
                 }
@@ -299,9 +252,8 @@ impl<'a> Springs<'a> {
             for k in 0..stretch.len() {
                 let s = stretch[k] + t * along[k];
                 if self.pulls(k, s) {
-                    let pull = self.law.0[self.rows[k]] * along[k];
-                    sums[0] += s * pull;
-                    sums[1] += along[k] * pull;
+                    sums[0] += s * along[k];
+                    sums[1] += along[k] * along[k];
                 }
             }
             sum_all(self.comm, &mut sums);

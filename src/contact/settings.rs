@@ -20,28 +20,11 @@ named!(ContactType {
     Smalbe = "smalbe",
 });
 
-/// Where the active-set loop begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactStart {
-    /// From all candidate rows.
-    All,
-    /// From the rows that hold, and the forces, if bodies are rigid and their surfaces are springs. It saves steps and
-    /// costs more than they do (docs/theory.md, section 9).
-    Rigid,
-}
-
-named!(ContactStart {
-    All = "all",
-    Rigid = "rigid",
-});
-
 /// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSettings {
     /// `fetifeti_contact_type`.
     pub kind: ContactType,
-    /// `fetifeti_contact_start`: where the active-set method begins.
-    pub start: ContactStart,
     /// `fetifeti_contact_max_it`: outer steps.
     pub max_it: usize,
     /// `fetifeti_contact_inner_rtol`: reduction of the residual, in (0, 1), in a step of the active-set method while
@@ -55,7 +38,6 @@ impl Default for ContactSettings {
     fn default() -> Self {
         ContactSettings {
             kind: ContactType::ActiveSet,
-            start: ContactStart::All,
             max_it: 200,
             inner_rtol: 0.1,
             face_pc: true,
@@ -68,8 +50,6 @@ impl ContactSettings {
     pub(crate) fn with_options(mut self, o: &Options) -> Result<ContactSettings> {
         let help = "method of the contact loop";
         self.kind = o.named("contact_type", self.kind, help)?;
-        let help = "rows that hold in the first step of the contact loop";
-        self.start = o.named("contact_start", self.start, help)?;
         let help = "outer steps of the contact loop at most";
         self.max_it = o.usize("contact_max_it", self.max_it, help)?;
         let help = "reduction of the residual per contact step while the active set changes";

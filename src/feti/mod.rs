@@ -13,6 +13,7 @@ pub(crate) mod method;
 pub(crate) mod operators;
 pub(crate) mod primal;
 pub mod projector;
+mod removed;
 pub mod settings;
 mod setup;
 pub(crate) mod spectrum;

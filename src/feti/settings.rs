@@ -1,6 +1,7 @@
 //! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use super::jump::coupled::MANY;
+use super::removed::refuse_removed;
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
 use petsc::{named, Options, Session};
@@ -342,7 +343,7 @@ impl MethodSettings {
         self.recycle = o.usize("recycle", self.recycle, help)?;
         let help = "threads per rank; 0: the cores of the machine divided by the ranks on it";
         self.threads = o.count("threads", self.threads, help)?;
-        removed(&o)?;
+        refuse_removed(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
         let help = "a guaranteed bound of the error in the energy norm, and estimates of the discretisation error";
@@ -381,18 +382,4 @@ impl MethodSettings {
             Some(_) => CoarseFunctions::All,
         })
     }
-}
-
-/// Refuses the options that chose another factorisation of subdomains until 0.2: none was ever faster.
-fn removed(o: &Options) -> Result<()> {
-    for (name, there) in [("local_solver", "multifrontal"), ("local_ordering", "nd")] {
-        let asked = o.get_string(name)?.unwrap_or_default();
-        if !["", "auto", there].contains(&&asked[..]) {
-            return Err(Error::input(format!(
-                "option {} is \"{asked}\", which is not there any more: it was never faster than {there}",
-                o.full_name(name)
-            )));
-        }
-    }
-    Ok(())
 }

@@ -7,7 +7,7 @@ use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
 use base::{Error, Result};
 use contact_judge::How;
-use fetifeti::contact::{ContactStart, ContactType};
+use fetifeti::contact::ContactType;
 use fetifeti::{FetiFeti, ProjectorKind, Settings};
 use petsc::Session;
 use scene::Scene;
@@ -47,26 +47,16 @@ fn scenes() -> [(&'static str, String); 2] {
     [("blocks", blocks(pushed)), ("wall", wall.into())]
 }
 
-/// The loops from all rows, and the active set from those of rigid bodies.
-fn hows(kinds: &[ContactType]) -> Vec<How> {
-    let rigid = How {
-        start: ContactStart::Rigid,
-        ..ContactType::ActiveSet.into()
-    };
-    let all = kinds.iter().map(|&kind| kind.into());
-    all.chain([rigid]).collect()
-}
-
 /// Energies agree with the reference's to 1e-8, KKT residuals are below 1e-8.
 fn agree(session: &Session, kinds: &[ContactType]) -> Result<()> {
     for (name, text) in scenes() {
         let scene = Scene::parse(name, &text)?;
         let problem = Assembled::of_scene(&scene);
         let reference: Reference = problem.solve();
-        for how in hows(kinds) {
+        for &kind in kinds {
             let what = (&scene, &problem, &reference);
-            let title = format!("{name}, {}, from {}", how.kind.name(), how.start.name());
-            let agreement = contact_judge::judge(session, what, false, how)
+            let title = format!("{name}, {}", kind.name());
+            let agreement = contact_judge::judge(session, what, false, kind)
                 .map_err(|why| Error::input(format!("{title}: {why}")))?;
             if session.rank() == 0 {
                 println!("{title}: {agreement:?}");
@@ -130,28 +120,6 @@ fn copies_do_not_matter(session: &Session) -> Result<()> {
     }
 }
 
-/// The blocks that are pushed to all sides: fewer steps from the rows of rigid bodies, and the same energy to 1e-8.
-fn rigid_bodies_save_steps(session: &Session) -> Result<()> {
-    let [(name, text), _] = scenes();
-    let scene = Scene::parse(name, &text)?;
-    let share = fetifeti::share(session, scene.n_subdomains());
-    let solve = |start: ContactStart| {
-        let mut settings = Settings::default();
-        settings.contact.start = start;
-        let rows = scene.substructures(&|s| share.contains(&s))?;
-        let solution = FetiFeti::new(session, rows, settings)?.solve()?;
-        let steps = solution.steps.len();
-        Ok::<_, Error>((solution.converged(), steps, solution.energy))
-    };
-    let (all, rigid) = (solve(ContactStart::All)?, solve(ContactStart::Rigid)?);
-    let apart = (all.2 - rigid.2).abs() / all.2.abs();
-    if all.0 && rigid.0 && rigid.1 < all.1 && apart < 1e-8 {
-        Ok(())
-    } else {
-        Err(Error::input(format!("all {all:?}, rigid {rigid:?}")))
-    }
-}
-
 /// The blocks that are pushed to all sides, with coefficients from 1 to 10⁵ from element to element: `auto` leaves
 /// eigenvalues that it would deflate in fewer bodies, and says so; with deflation the energy is the same to 1e-8.
 fn deflation_is_declined(session: &Session) -> Result<()> {
@@ -201,13 +169,9 @@ fn refused(session: &Session) -> Result<()> {
     let before = Scene::parse("before", &scenes()[0].1)?;
     let share = fetifeti::share(session, scene.n_subdomains());
     let of = |scene: &Scene| scene.substructures(&|s| share.contains(&s));
-    for (how, later) in hows(&KINDS)
-        .into_iter()
-        .flat_map(|h| [(h, false), (h, true)])
-    {
+    for (kind, later) in KINDS.iter().flat_map(|&k| [(k, false), (k, true)]) {
         let mut settings = Settings::default();
-        settings.contact.kind = how.kind;
-        settings.contact.start = how.start;
+        settings.contact.kind = kind;
         let rows = of(&scene)?;
         let (loads, gaps): (Vec<_>, Vec<_>) = (
             rows.local.iter().map(|s| s.f.clone()).collect(),
@@ -225,7 +189,7 @@ fn refused(session: &Session) -> Result<()> {
         };
         let who = "bodies \"b3_3_2\", \"b4_3_2\", \"b3_3_3\", \"b4_3_3\" are pushed away for ever";
         if !said.contains(who) {
-            return Err(Error::input(format!("{how:?}, later {later}: {said}")));
+            return Err(Error::input(format!("{kind:?}, later {later}: {said}")));
         }
     }
     Ok(())
@@ -237,7 +201,6 @@ fn many_motions_on_one_rank() {
         with_session(|session| {
             agree(session, &KINDS).unwrap();
             agree_with_jumps(session, &WEIGHTS).unwrap();
-            rigid_bodies_save_steps(session).unwrap();
             deflation_is_declined(session).unwrap();
             refused(session).unwrap();
         });

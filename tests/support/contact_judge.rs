@@ -3,19 +3,18 @@
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
 use base::{Error, Result};
-use fetifeti::contact::{ContactStart, ContactType};
+use fetifeti::contact::ContactType;
 use fetifeti::{FetiFeti, MethodSettings, ProjectorKind, Settings};
 use parallel::exchange::gather_all;
 use petsc::Session;
 use scene::Scene;
 use std::collections::HashMap;
 
-/// The loop and its start, the number of rows from which a block is scaled with a sparse factorisation, and the
+/// The loop, the number of rows from which a block is scaled with a sparse factorisation, and the
 /// projector's weight.
 #[derive(Debug, Clone, Copy)]
 pub struct How {
     pub kind: ContactType,
-    pub start: ContactStart,
     pub coupled: usize,
     pub projector: ProjectorKind,
 }
@@ -27,7 +26,6 @@ impl From<ContactType> for How {
         } = MethodSettings::default();
         How {
             kind,
-            start: ContactStart::All,
             coupled,
             projector,
         }
@@ -42,7 +40,6 @@ fn settings(how: How) -> Settings {
         ..MethodSettings::default()
     });
     settings.contact.kind = how.kind;
-    settings.contact.start = how.start;
     settings
 }
 

@@ -18,7 +18,7 @@ use std::time::Instant;
 use super::judge::Sizes;
 use super::pulling::Pulling;
 use super::restore::restore;
-use super::settings::{ContactSettings, ContactStart, ContactType};
+use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Look, Run};
@@ -182,7 +182,7 @@ impl<'a> ActiveSet<'a> {
         if run.state.reference == 0.0 {
             run.state.reference = run.reference()?;
             // A cold start begins at the λ for which the reference was computed.
-            run.fresh = start.is_none() && !run.begin_with_rigid_bodies()?;
+            run.fresh = start.is_none();
         }
         if !run.fresh {
             let mut lambda = run.at.lambda.array_mut()?;
@@ -201,24 +201,6 @@ impl<'a> ActiveSet<'a> {
         self.at.lambda.set(0.0)?;
         self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)
-    }
-
-    /// Takes the first set and the first λ from rigid bodies on springs, where that is asked for and has an answer.
-    /// Returns whether it was done. Collective.
-    fn begin_with_rigid_bodies(&mut self) -> Result<bool> {
-        let method = self.method;
-        let dual = method.dual();
-        if self.settings.start == ContactStart::All || dual.natural.r == 0 {
-            return Ok(false);
-        }
-        let load = &self.at.loads.kernel;
-        let Some((lambda, mut active)) = motion::first(&method.problem, &dual, load)? else {
-            return Ok(false);
-        };
-        restore(&method.problem, &dual, &mut active, &|r| lambda[r], load)?;
-        self.state.lambda = lambda;
-        self.state.active = active;
-        Ok(true)
     }
 
     /// Reduction of the residual while the set changes.
