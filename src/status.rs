@@ -61,7 +61,7 @@ impl Status {
         }
     }
 
-    /// What the user can do about it, in a sentence without a full stop; `None` where the name says it all.
+    /// Advice to the user about this status, as a sentence without a full stop; `None` where the name says it all.
     pub fn remedy(&self) -> Option<&'static str> {
         match self {
             Status::Refinement => Some(

@@ -1,9 +1,9 @@
-//! What a host has changed since the last set-up.
+//! Changes that a host has made since the last set-up.
 
 use parallel::exchange::max_all;
 use petsc::Session;
 
-/// What has changed.
+/// Changes since the last set-up, by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Changed {
     /// Anything that is not among the following.
@@ -17,7 +17,7 @@ pub struct Changed {
 }
 
 impl Changed {
-    /// What has changed on any rank. Collective.
+    /// The changes on any rank. Collective.
     pub fn anywhere(self, session: &Session) -> Changed {
         let mut all =
             [self.whole, self.matrices, self.rows, self.gaps].map(|b| f64::from(u8::from(b)));

@@ -9,7 +9,7 @@ use std::ffi::{c_char, c_int, CStr, CString};
 
 /// An error with a message, the same on all ranks.
 const SENTENCE: c_int = 1;
-/// The same, about a matrix that cannot be factored.
+/// An error about a matrix that cannot be factored, with a message, the same on all ranks.
 pub const UNFIT: c_int = 2;
 /// PETSc has already reported the error.
 const RAISED: c_int = 3;

@@ -63,7 +63,7 @@ pub extern "C" fn PetscDLLibraryRegister_fetifeti() -> c_int {
     unsafe { ff_plugin_register(AVX2) }
 }
 
-/// The same for programs that link with the library: they call it once after PetscInitialize.
+/// Registers the KSP type "fetifeti" for programs that link with the library: they call it once after PetscInitialize.
 #[no_mangle]
 pub extern "C" fn FetiFetiInitializePackage() -> c_int {
     // SAFETY: the caller has initialised PETSc.

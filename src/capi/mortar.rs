@@ -10,7 +10,7 @@ use elements::mortar::{self, reach, Sample, Side};
 use parallel::exchange::gather_all;
 use petsc::Session;
 
-/// What one rank gives for a pair of surfaces.
+/// The data that one rank gives for a pair of surfaces.
 pub struct GivenMortar<'a> {
     /// Numbers of the surfaces; the first one carries the multipliers.
     pub surfaces: [i32; 2],
@@ -138,7 +138,7 @@ impl Surfaces<'_> {
         Ok(())
     }
 
-    /// What must be the same on all ranks, then (node, gap, without) of this rank's nodes.
+    /// The data of a mortar that must be the same on all ranks, then (node, gap, without) of this rank's nodes.
     fn words(&self, given: &GivenMortar<'_>) -> Vec<u64> {
         let [a, b] = given.surfaces.map(|k| k as u64);
         let kind = u64::from(given.kind == RowKind::Inequality);

@@ -37,7 +37,7 @@ pub struct Counts {
 /// The rows of all mortars.
 #[derive(Default)]
 pub struct MortarRows {
-    /// Those that this rank gives, in the order in which it gives them.
+    /// The rows that this rank gives, in the order in which it gives them.
     pub placed: Vec<Placed>,
     pub counts: Vec<Counts>,
 }
@@ -150,7 +150,8 @@ impl Object {
         surface.dofs.iter().map(node).collect()
     }
 
-    /// What is known of the unknowns of surfaces. Collective.
+    /// The state of the unknowns of surfaces: whether they are held, and which are tied by pairs of the host.
+    /// Collective.
     fn known(&self, held: IsHeld, numbers: &[Numbers]) -> Result<Known> {
         let all = distinct(numbers.iter().flatten().flatten().filter_map(|d| *d));
         let mut words = Vec::new();

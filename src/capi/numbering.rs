@@ -1,4 +1,4 @@
-//! What numbers of unknowns count: all of them, or those of one matrix.
+//! Numberings of unknowns: of all of them, or of those of one matrix.
 
 /// The numbering that a number belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -51,9 +51,9 @@ pub struct Object {
     pub at_nodes: AtNodes,
     pub bodies: usize,
     pub view: bool,
-    /// What has changed on this rank since the last set-up.
+    /// Changes on this rank since the last set-up.
     pub changed: Changed,
-    /// What set-ups have taken so far.
+    /// Work that set-ups have taken so far.
     pub work_done: Work,
     /// Called after each step of the contact loop.
     pub monitor: Option<Monitor>,

@@ -17,7 +17,7 @@ use petsc::Session;
 /// Places of one node that differ by more than this part of the coordinates are different places.
 const SAME: f64 = 1e-9;
 
-/// What one rank gives of a surface.
+/// The data that one rank gives of a surface.
 pub struct GivenSurface<'a> {
     /// The matrix whose unknowns `dofs` lists; negative: numbers among all unknowns.
     pub matrix: i32,
@@ -154,7 +154,7 @@ struct Node {
     dofs: Vec<i32>,
 }
 
-/// What tells nodes apart: their unknowns, or their places where they have none.
+/// The key that tells nodes apart: their unknowns, or their places where they have none.
 type Key = (Vec<i32>, [u64; 3]);
 
 impl Node {

@@ -42,7 +42,7 @@ pub struct Anchors {
     known: Rc<Known>,
 }
 
-/// What a solution with anchors has beside λ.
+/// The result of a solve with anchors, apart from λ.
 pub struct Anchored {
     /// α.
     pub place: Vec<f64>,
@@ -135,8 +135,8 @@ impl Anchors {
         self.stiffness.iter_mut().for_each(|h| *h /= SOFTER);
     }
 
-    /// What anchors add to φ' along a segment at t, −dα (y(t) − H (α(t) − α_k)), and its derivative; α and y at both
-    /// ends. Collective.
+    /// The contribution of the anchors to φ' along a segment at t, −dα (y(t) − H (α(t) − α_k)), and its derivative; α
+    /// and y at both ends. Collective.
     pub fn slope(&self, comm: &SimpleCommunicator, ends: [&[Vec<f64>; 2]; 2], t: f64) -> [f64; 2] {
         let [from, to] = ends;
         self.known.total(comm, |k| {

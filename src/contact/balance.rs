@@ -34,7 +34,8 @@ impl Balance {
         Balance::raised(comm, g, natural, None)
     }
 
-    /// The same with N = GᵀG + H for a diagonal H ≥ 0 of the columns that are known here. Collective.
+    /// Forms and factors N = GᵀG + H for a diagonal H ≥ 0 of the columns that are known here (`None`: zero); `natural`
+    /// has the G of all candidates, of which `g` are multiples of rows. Collective.
     pub fn raised(
         comm: &SimpleCommunicator,
         g: Rows,

@@ -41,7 +41,8 @@ fn carries(inequality: bool, lambda: f64) -> bool {
     !inequality || lambda > 0.0
 }
 
-/// The same for the rows `b` of one node.
+/// Moves the multipliers of the rows `b` of one node downhill in cᵀλ, until rows with multipliers do not contradict
+/// each other. Forces Bᵀλ stay.
 fn settle_rows(b: &Dense, inequality: &[bool], c: &[f64], lambda: &mut [f64]) {
     // A row leaves in each pass.
     for _ in 0..lambda.len() {

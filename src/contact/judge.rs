@@ -18,8 +18,8 @@ const NOISE: f64 = 3.0;
 /// largest displacement.
 pub const ROUNDING: f64 = 1e-14;
 
-/// What forces and displacements of a problem are small beside, whatever the largest of a solution are: these may be
-/// rounding themselves, where bodies touch without force or contact holds all that could move.
+/// Sizes beside which forces and displacements of a problem count as small. The largest ones of a solution are not
+/// used: they may be rounding themselves, where bodies touch without force or contact holds all that could move.
 #[derive(Debug, Clone, Copy)]
 pub struct Sizes {
     /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are what sums of
@@ -31,7 +31,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Those of `problem`. Collective.
+    /// The sizes of `problem`. Collective.
     pub fn of(dual: &Dual, problem: &Substructures) -> Sizes {
         let locals = problem.local.iter().zip(&dual.stiffness.locals);
         let give = |(sub, local): (&Subdomain, &Scaled)| match local.stiffest() {

@@ -142,7 +142,7 @@ struct Course<'a, 'o> {
     settings: &'a ContactSettings,
     rtol: f64,
     clock: Instant,
-    /// What the steps before took.
+    /// Seconds that the steps before this search took.
     seconds: f64,
     /// All steps, and the number of those before.
     steps: Vec<Step>,

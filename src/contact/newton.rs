@@ -38,10 +38,10 @@ pub(super) const STIFFNESS: f64 = 30.0;
 /// of bodies that bend begin as many times softer as these are.
 const COMPACT: f64 = 7.0;
 
-/// Factor by which the springs become stiffer from one minimisation to the next, …
+/// Factor by which the springs become stiffer from one minimisation to the next.
 pub(super) const STIFFER: f64 = 3.0;
 
-/// … and the largest stiffness. Beyond it C is lost in the rounding of F.
+/// Largest stiffness of the springs, relative as [`STIFFNESS`] is. Beyond it C is lost in the rounding of F.
 const STIFFEST: f64 = 1e9;
 
 /// The set hardly changes if this many rows change, or this part of all.
@@ -52,9 +52,9 @@ const FEW_OF_ALL: f64 = 0.02;
 /// exact than the jumps by the stiffness: with stiffer springs the residual falls further.
 pub(super) const REDUCTION: f64 = 1e-3;
 
-/// Reduction of the residual if the step does not lead downwards: first times this, …
+/// Factor on the reduction of the residual for another attempt, if the Newton step does not lead downwards.
 pub(super) const MORE: f64 = 1e-3;
-/// … and at most this often.
+/// Largest number of attempts at a Newton step that leads downwards.
 const ATTEMPTS: usize = 3;
 
 /// Where a Newton step came to.

@@ -31,9 +31,9 @@ use parallel::exchange::{any, total};
 
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
 const ETA: f64 = 0.1;
-/// M₀: the projected gradient that is allowed per violated balance, relative to ϱ, …
+/// M₀: the projected gradient that is allowed per violated balance, relative to ϱ.
 const M_START: f64 = 0.1;
-/// … and the factor by which it shrinks when the Lagrangian does not grow enough.
+/// Factor by which M shrinks when the Lagrangian does not grow enough.
 const M_SHRINK: f64 = 0.1;
 /// Largest number of products with A in one inner problem.
 const PRODUCTS: usize = 2_000;

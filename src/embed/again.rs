@@ -33,11 +33,11 @@ struct Start {
     inside: Vec<f64>,
     /// Multiplier and state of the solver's rows.
     rows: Vec<(f64, bool)>,
-    /// The same of the rows that this rank gave.
+    /// Multipliers and states of the rows that this rank gave.
     given: GivenResults,
 }
 
-/// What a row of the host is about: the node of its first term, its kind, and which of the rows about these it is.
+/// The subject of a row of the host: the node of its first term, its kind, and its number among the rows with these.
 type Subject = (u32, bool, usize);
 
 impl Embedded {
@@ -206,7 +206,7 @@ impl Embedded {
     }
 }
 
-/// What each row is about.
+/// The subject of each given row.
 fn subjects(given: &[GivenRow], block_size: usize) -> Vec<Subject> {
     let mut seen: HashMap<(u32, bool), usize> = HashMap::new();
     let one = |row: &GivenRow| {
@@ -219,7 +219,7 @@ fn subjects(given: &[GivenRow], block_size: usize) -> Vec<Subject> {
     given.iter().map(one).collect()
 }
 
-/// What a row between bodies ties.
+/// The source of a row between bodies, and the nodes of bodies that it ties.
 fn place(label: &RowLabel) -> (RowSource, [Option<BodyNode>; 2]) {
     (label.source, label.members)
 }

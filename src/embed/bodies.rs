@@ -85,7 +85,7 @@ pub struct Bodies {
     pub n: usize,
     /// The body of each of this rank's subdomains.
     pub mine: Vec<usize>,
-    /// The same, and the bodies of their neighbours.
+    /// The bodies of this rank's subdomains and of their neighbours, by subdomain.
     around: HashMap<u32, u64>,
 }
 

@@ -1,5 +1,5 @@
-//! What follows from the patterns of the host's matrices and the numbers of its dofs, and stays when only the entries
-//! of the matrices change; and the numbers of other matrices in this frame.
+//! The frame of a torn operator: all that follows from the patterns of the host's matrices and the numbers of its dofs,
+//! and stays when only the entries of the matrices change; and the numbers of other matrices in this frame.
 //!
 //! Nothing is taken on trust: every entry of the new matrices has to find its place in the parts that were set up. An
 //! entry that was exactly zero and no longer is, a boundary condition that comes or goes, a part that falls apart, or a
@@ -25,7 +25,7 @@ pub struct Frame {
     pub layout: PetscVec,
     /// The global dofs of this rank's pieces, increasing.
     pub ghosts: Vec<u32>,
-    /// Those of them that are known.
+    /// The known dofs among the global dofs of this rank's pieces.
     pub known: HashSet<u32>,
     /// The rows of each piece.
     pub rows: Vec<Rows>,

@@ -13,8 +13,8 @@
 //! (`touched`), the rows go to the ranks that take them (`placed`), values of known dofs follow at each solve
 //! (`known_dofs`).
 //!
-//! What follows from patterns and numbers alone stays in a `frame`: with other entries in the same matrices, other rows
-//! or other gaps (`again`) no more is done than they ask for, and `work` counts it.
+//! Data that follow from patterns and numbers alone stay in a `frame`: with other entries in the same matrices, other
+//! rows or other gaps (`again`) no more is done than they ask for, and `work` counts it.
 
 pub(crate) mod again;
 pub(crate) mod bodies;

@@ -169,7 +169,8 @@ pub fn annihilates(k: &Csr, v: &[f64], fraction: f64) -> bool {
     cancels(k, &k.val, v, fraction)
 }
 
-/// The same for a matrix with the pattern of `k` and other entries.
+/// Whether the terms of each row of K v cancel to less than `fraction` of their size, for the K with the pattern of `k`
+/// and these entries.
 pub fn cancels(k: &Csr, entries: &[f64], v: &[f64], fraction: f64) -> bool {
     let largest = v.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     (0..k.n()).all(|i| {

@@ -15,14 +15,14 @@ use parallel::halo::Halo;
 use parallel::owners::Owners;
 use petsc::{Session, Vec as PetscVec};
 
-/// What this rank has of the host's problem.
+/// This rank's part of the host's problem.
 pub struct Here<'a> {
     /// A vector of the host's layout.
     pub layout: &'a PetscVec,
     /// The global dofs of this rank's pieces, increasing.
     pub ghosts: &'a [u32],
     pub halo: &'a Halo,
-    /// Those of them that are known.
+    /// The known dofs among the global dofs of this rank's pieces.
     pub known: &'a HashSet<u32>,
     /// This rank's subdomains.
     pub parts: &'a [Part],
@@ -63,13 +63,13 @@ impl Holder {
 
 /// The dofs that rows touch, as one rank sees them.
 pub struct Touched {
-    /// Those of the rows that this rank gave, with the block of connected rows of each unknown.
+    /// The holders of the dofs in the rows that this rank gave, with the block of connected rows of each unknown.
     pub given: HashMap<u32, (Holder, u32)>,
     /// The block of every unknown of this rank's subdomains that a row on any rank touches.
     pub here: HashMap<u32, u32>,
 }
 
-/// What the owner of a dof knows of it.
+/// A touched dof as its owner knows it.
 struct Owned {
     holder: Holder,
     /// The lowest dof of the connected rows that are known so far.

@@ -1,4 +1,4 @@
-//! What set-ups have done so far, counted over all ranks: how much of it was repeated.
+//! The work of the set-ups so far, counted over all ranks: it shows how much was repeated.
 
 use super::partition::partitions;
 use crate::feti::subdomain::problem::factorisations;
@@ -60,7 +60,7 @@ impl Work {
     }
 }
 
-/// What this process has done so far.
+/// Numbers of analyses, factorisations and partitions of this process so far.
 fn now() -> [f64; 3] {
     [analyses(), factorisations(), partitions()].map(|n| n as f64)
 }

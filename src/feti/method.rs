@@ -36,7 +36,7 @@ pub struct LinearMethod {
     /// an iteration has seen and `auto` would deflate with fewer bodies.
     pub(super) worth: OnceCell<f64>,
     pub(super) declined: Cell<f64>,
-    /// What is kept of the pattern of each local subdomain.
+    /// The symbolic analysis of each local subdomain, kept for further set-ups.
     pub(super) analysed: Vec<Option<Arc<Analysed>>>,
 }
 
@@ -106,9 +106,9 @@ impl LinearMethod {
         }
     }
 
-    /// The same problem with other numbers in all matrices, and with other rows if there are some. Patterns are not
-    /// analysed again. `None` if a subdomain turns out to have motions without energy that it did not have: whatever
-    /// follows from its motions is no longer right. Collective.
+    /// This problem, set up again with other numbers in all matrices, and with other interface rows if there are some.
+    /// Patterns are not analysed again. `None` if a subdomain turns out to have motions without energy that it did not
+    /// have: whatever follows from its motions is no longer right. Collective.
     ///
     /// # Errors
     /// As [`LinearMethod::new`].
@@ -176,7 +176,8 @@ impl LinearMethod {
         Ok(done)
     }
 
-    /// The same, but Z^k stays where `work` has brought it if it succeeds. Collective.
+    /// Does `work`, which may change Z^k. If it succeeds, Z^k stays where `work` has brought it; else Z^k is what it
+    /// was before. Collective.
     ///
     /// # Errors
     /// Those of `work`.

@@ -43,7 +43,7 @@ use petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
 /// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;
 
-/// What the set-up makes of a problem: all of a [`LinearMethod`] that follows from the rows.
+/// The result of a set-up: all of a [`LinearMethod`] that follows from the rows.
 pub(super) struct Made {
     system: Rc<System>,
     ksp: Ksp,
@@ -71,8 +71,9 @@ impl LinearMethod {
         LinearMethod::keeping(session, problem, settings, None)
     }
 
-    /// The same for a problem of which only rows, or rows and the numbers of matrices differ from one that is set up:
-    /// where the interface of a subdomain is the same, its factors or its analysis are kept. Collective.
+    /// Sets a problem up with what is `kept` of another one, from which it differs only in rows, or in rows and the
+    /// numbers of matrices: where the interface of a subdomain is the same, its factors or its analysis are kept.
+    /// Collective.
     ///
     /// # Errors
     /// As [`LinearMethod::new`].

@@ -31,14 +31,15 @@ pub struct Idle {
     pub shares: Vec<f64>,
     /// How far it is from having no energy: the largest strain of a cell of size one.
     pub strain: f64,
-    /// What is said where a load drives it: a sentence.
+    /// The message where a load drives the motion: a sentence.
     pub what: Arc<str>,
 }
 
-/// The load does work on a motion if that is more than this part of what it could be, |fᵀv| beside ‖f‖ ‖v‖, …
+/// The load does work on a motion only if that is more than this part of what it could be, |fᵀv| beside ‖f‖ ‖v‖.
 const WORK: f64 = 1e-6;
 
-/// … and more than this many times the strain of the motion: coordinates with few digits turn the load, too.
+/// The load does work on a motion only if that, relative to ‖f‖ ‖v‖, is more than this many times the strain of the
+/// motion, too: coordinates with few digits turn the load.
 const TURNED: f64 = 100.0;
 
 /// Returns an error if the load does work on an idle motion: nothing stands against it. Collective.

@@ -150,8 +150,8 @@ pub struct Substructures {
 }
 
 impl Substructures {
-    /// What is to be said of the cells of the first of some bodies with motions without energy, behind a sentence; or
-    /// nothing.
+    /// A remark on the cells of the first of some bodies with motions without energy, to be put behind a sentence;
+    /// empty if there is none.
     pub(crate) fn weakness(&self, bodies: &[u32]) -> String {
         let of = |(b, text): &(usize, String)| {
             bodies.contains(&(*b as u32)).then(|| format!("; {text}"))

@@ -84,7 +84,8 @@ const MANY: usize = 8;
 /// steps.
 const LESS_MISLED: f64 = 0.1;
 
-/// The same for all inner problems of a run that tries the set which the augmented Lagrangian has found.
+/// Factor by which all inner problems are solved more exactly in a run that tries the set which the augmented
+/// Lagrangian has found.
 const EXACT: f64 = 1e-2;
 
 /// A step is solved to the end if its residual has to fall by no more than this.
@@ -127,7 +128,7 @@ pub(super) struct ActiveSet<'a> {
     n_rows: usize,
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
-    /// What multipliers and gaps are rounding beside.
+    /// Sizes of the problem beside which multipliers and gaps are rounding.
     sizes: Sizes,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,

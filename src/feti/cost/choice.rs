@@ -1,4 +1,4 @@
-//! What the method chooses by itself: the weights by the kind of problem; M_C or M_D by a model of cost, which decides
+//! Automatic choices of the method: the weights by the kind of problem; M_C or M_D by a model of cost, which decides
 //! whether lifting jumps into whole bodies pays.
 //!
 //! M_C takes fewer iterations than M_D if many subdomains lie across a body. It costs a product S Z_c per subdomain and

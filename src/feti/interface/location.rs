@@ -23,7 +23,7 @@ pub struct Location {
 pub struct Locations(FxHashMap<u32, Location>);
 
 impl Locations {
-    /// Those of this rank.
+    /// The locations of the subdomains of this rank.
     pub fn own(comm: &SimpleCommunicator, problem: &Substructures) -> Locations {
         let at = |body: usize| Location {
             rank: comm.rank() as u32,
@@ -55,7 +55,7 @@ impl Locations {
     }
 }
 
-/// What a rank knows of a body of which it has a subdomain.
+/// The facts about a body that every rank with one of its subdomains knows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Home {
     /// The rank of the body's lowest subdomain.

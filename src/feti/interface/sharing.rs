@@ -41,7 +41,7 @@ pub struct Sharing {
     pub shared_dofs: Vec<Vec<u32>>,
     /// Where the subdomains of this rank and those with these copies are.
     pub locations: Locations,
-    /// What this rank knows of the bodies of its subdomains.
+    /// The [`Home`] of each body of this rank's subdomains, by the number of the body.
     pub homes: FxHashMap<usize, Home>,
     /// The averages that are primal in each local subdomain.
     pub averages: Vec<Vec<Average>>,

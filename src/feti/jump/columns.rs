@@ -114,7 +114,7 @@ impl JumpEntries {
         }
     }
 
-    /// The same with more entries at the end of the lists of each subdomain.
+    /// These entries with more of them at the end of the lists of each subdomain.
     pub(super) fn extended(self, more: &[Vec<JumpEntry>]) -> JumpEntries {
         let n = more.iter().map(Vec::len).sum::<usize>();
         let mut out = JumpEntries::with_room(self.row.len() + n, self.contact.len());
@@ -133,7 +133,7 @@ impl JumpEntries {
         out
     }
 
-    /// Those of local subdomain `j`.
+    /// The entries of local subdomain `j`.
     pub fn of(&self, j: usize) -> JumpColumns<'_> {
         let (from, to) = (self.start[j], self.start[j + 1]);
         let entries = from.entries..to.entries;
@@ -147,7 +147,7 @@ impl JumpEntries {
         }
     }
 
-    /// Those of all local subdomains.
+    /// The entries of each local subdomain, one after the other.
     pub fn iter(&self) -> impl Iterator<Item = JumpColumns<'_>> {
         (0..self.start.len().saturating_sub(1)).map(|j| self.of(j))
     }
@@ -239,7 +239,7 @@ impl JumpColumns<'_> {
     }
 }
 
-/// What the subdomains of a rank exchange with the owners of multipliers for B_Dᵀ λ and B_D y
+/// The values that the subdomains of a rank exchange with the owners of multipliers for B_Dᵀ λ and B_D y
 /// ([`Stiffness::fetch_scaled`](crate::feti::operators::stiffness::Stiffness::fetch_scaled) and `sum_scaled`).
 #[derive(Debug, Clone, Default)]
 pub struct ScaledGhosts {

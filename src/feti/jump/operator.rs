@@ -100,7 +100,8 @@ impl Jump {
         Jump::coupling(comm, problem, sharing, MANY)
     }
 
-    /// The same; blocks with more than `many` rows are coupled. Collective.
+    /// Builds Z B and Z B_D with the rows that hold to begin with; blocks with more than `many` rows are coupled.
+    /// Collective.
     pub fn coupling(
         comm: &SimpleCommunicator,
         problem: &Substructures,

@@ -33,7 +33,7 @@ impl Jump {
         self.reconcile(0..self.blocks.len());
     }
 
-    /// The same for some blocks.
+    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for these blocks.
     fn reconcile(&mut self, which: impl Iterator<Item = usize>) {
         for block in which.map(|k| &self.blocks[k]) {
             let (active, c) = (

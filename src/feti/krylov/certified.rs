@@ -54,7 +54,7 @@ pub struct Certified {
     pub least: f64,
     /// ‖u‖_K, of the unknowns.
     pub size: f64,
-    /// What rounding may add to the bounds; part of `most`.
+    /// The part of `most` that rounding may add to the bounds.
     pub rounding: f64,
     /// Krylov iterations of the better pairs.
     pub iterations: usize,

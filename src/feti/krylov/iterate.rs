@@ -46,7 +46,7 @@ impl IterationControl {
         }
     }
 
-    /// The same run, and monitors may ask for the displacements.
+    /// This run with monitors that may ask for the displacements.
     pub fn observed(self) -> IterationControl {
         IterationControl {
             observed: true,

@@ -1,4 +1,4 @@
-//! What a pair (u, λ) leaves of the equations, and the error in the energy norm that is credible beside it.
+//! The residual of the equations at a pair (u, λ), and the error in the energy norm that is credible beside it.
 
 /// The error may be this many times the tolerance, relative to ‖u‖_K: the iteration measures another norm.
 const CREDIBLE: f64 = 1e3;
@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 /// However loose the tolerance is, an error is too large from this part of ‖u‖_K on.
 const LARGEST: f64 = 0.5;
 
-/// What (u, λ) leave of the equations, and the sizes of their terms. D is the diagonal of K.
+/// The residual of the equations at (u, λ), and the sizes of their terms. D is the diagonal of K.
 #[derive(Debug, Clone, Default)]
 pub struct Leftover {
     /// r = f − K u − Bᵀ λ on Γ of each local subdomain, length n_Γ.

@@ -42,7 +42,7 @@ pub struct LinearSolution {
     pub kkt: Kkt,
     /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
     pub energy: f64,
-    /// What is left of the equations.
+    /// The residual of the equations, and the sizes of their terms.
     pub left: Leftover,
     /// Seconds of condensing and iterating.
     pub solve_seconds: f64,

@@ -116,7 +116,8 @@ impl Iterate {
         dual.natural.balance(dual.comm(), load, &self.lambda)
     }
 
-    /// The same, to begin an iteration with: by no forces that it would have to take back. Collective.
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ), to begin an iteration with: balances the forces on every floating body by no
+    /// forces that the iteration would have to take back. Collective.
     pub fn begin(&self, dual: &Dual) -> Result<()> {
         let load = &self.loads.kernel;
         dual.natural.begin(dual.comm(), load, &self.lambda)

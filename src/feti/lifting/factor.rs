@@ -32,7 +32,7 @@ enum Factor {
     Dense(Semidefinite),
 }
 
-/// What a subdomain adds to A: columns, and the lower triangle of its block.
+/// The contribution of a subdomain to A: columns, and the lower triangle of its block.
 pub(crate) type Share<'a> = (&'a [u64], &'a [u64]);
 
 /// The shares of each owned body, in the order of the ranks: `owned` has its primal dofs, those of this rank begin at

@@ -73,7 +73,8 @@ impl Dual {
         Ok((changed as usize, renewed))
     }
 
-    /// What is derived from the set of rows is renewed with the next one, whether or not it is another one.
+    /// Marks everything derived from the set of rows as outdated: it is renewed with the next set, whether or not that
+    /// is another one.
     pub(crate) fn outdate(&mut self) {
         self.stale = true;
     }

@@ -131,8 +131,8 @@ impl NaturalCoarse {
         self.balance_with(comm, load, lambda, false)
     }
 
-    /// The same, to begin an iteration with: where forces would be [`VAST`], Q = I takes the place of Q = M⁻¹.
-    /// Collective.
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ), to begin an iteration with: balances the forces on every floating body. Where
+    /// forces would be [`VAST`], Q = I takes the place of Q = M⁻¹. Collective.
     pub fn begin(
         &self,
         comm: &SimpleCommunicator,

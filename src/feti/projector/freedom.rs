@@ -16,7 +16,8 @@ use base::linalg::sorted::distinct;
 pub struct FreeMotion {
     /// The bodies, increasing.
     pub bodies: Vec<usize>,
-    /// What they do, to be continued from their names: "slides along x and turns about z through (0.5, 0, 0)".
+    /// The motion in words that continue the names of the bodies: "slides along x and turns about z through (0.5, 0,
+    /// 0)".
     pub words: String,
 }
 

@@ -53,7 +53,7 @@ pub struct Gram {
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
     pub unheld: Vec<Motion>,
-    /// What inverse iteration says of the smallest eigenvalue of the scaled matrix; zero before, and where it is tiny.
+    /// Smallest eigenvalue of the scaled matrix by inverse iteration; zero before that, and where it is tiny.
     pub(super) smallest: Cell<f64>,
 }
 
@@ -64,9 +64,10 @@ impl Gram {
         Gram::without(shape, a, (&[], &[]))
     }
 
-    /// The same, without these columns (by their names) as well, each of which depends on the others though its pivot
-    /// does not show it, if they are many. Single bodies are free to move where the rows do no more than `noise`, given
-    /// for each column of their body; it is empty where directions are exact. Collective.
+    /// Factors `a`, a GᵀG of this shape. If it has many columns, those in `hidden`, given by name, are left out as
+    /// well: each depends on the others though its pivot does not show it. Single bodies are free to move where the
+    /// rows do no more than `noise`, given for each column of their body; it is empty where directions are exact.
+    /// Collective.
     pub fn without(shape: &Shape, a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
         match shape.team() {
             None => Gram::few(shape, &a, noise),
@@ -296,7 +297,7 @@ pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
     scale(a, &diagonal, all)
 }
 
-/// The same with this diagonal, in these rows.
+/// A ← D⁻¹ A D⁻¹ in these rows, with D² this diagonal; returns 1/D, one where the diagonal vanishes.
 fn scale(a: &mut Csr, diagonal: &[f64], rows: impl Iterator<Item = usize>) -> Vec<f64> {
     let of = |&d: &f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
     let scale: Vec<f64> = diagonal.iter().map(of).collect();

@@ -71,8 +71,8 @@ pub fn moving(problem: &Substructures, columns: &KernelColumns, motion: &Motion)
     }
 }
 
-/// What is to be said of a body that a combination of kernel vectors moves, if its cells leave motions without energy
-/// that are not rigid: behind a sentence.
+/// A remark on a body that a combination of kernel vectors moves, to be put behind a sentence; empty unless the cells
+/// of the body leave motions without energy that are not rigid.
 pub fn weakness(problem: &Substructures, columns: &KernelColumns, motion: &Motion) -> String {
     problem.weakness(&moved(columns, motion))
 }

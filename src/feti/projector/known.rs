@@ -34,7 +34,7 @@ pub struct Known {
 struct Part {
     /// Their names, increasing.
     names: Vec<u32>,
-    /// Those that this rank has in the factor, by number, increasing.
+    /// Known columns that this rank has in the factor, by number, increasing.
     own: Vec<u32>,
     /// For each rank that has others of them, their numbers.
     of_others: Vec<(i32, Vec<u32>)>,

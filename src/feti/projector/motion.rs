@@ -1,9 +1,9 @@
 //! Rigid motions of bodies as combinations of kernel vectors, most of which do not take part.
 
-/// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions, …
+/// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions.
 pub(super) const NOTHING: f64 = 1e-13;
 
-/// … and of solves with many columns.
+/// Entries of a motion below this, relative to its largest one, are rounding of solves with many columns.
 pub(super) const NOTHING_SOLVED: f64 = 1e-10;
 
 /// A combination of kernel vectors: (column of R, coefficient), by increasing column.

@@ -78,7 +78,7 @@ pub struct NaturalCoarse {
     pub(super) last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// The numbers of the last GᵀG that was factored.
     pub(super) numbers: RefCell<Numbers>,
-    /// What rounding of the input leaves of the work of rows, by column (`noise`).
+    /// Squared work of rows that may be rounding of the input, by column (`noise`).
     pub(super) noise: Vec<f64>,
     /// G on the owned rows.
     pub g: Rows,

@@ -25,7 +25,7 @@ pub struct Numbers {
     share: Vec<f64>,
     /// Where ranks share the factor: the sums, in the rows that this rank has.
     sum: Vec<f64>,
-    /// What others have sent, by entry and rank.
+    /// Contributions of other ranks to entries of this rank's rows, by entry and rank.
     sent: Vec<Sent>,
 }
 

@@ -41,7 +41,7 @@ pub struct Raised {
     /// C and N.
     rows: Vec<Motion>,
     motions: Vec<Motion>,
-    /// The same, by where this rank has the entries in vectors that no rank has whole.
+    /// The entries of C and N, placed where this rank has them in vectors that no rank has whole.
     shared: [Vec<Shared>; 2],
     /// W⁻¹; its rows belong to motions, its columns to rows of G.
     inverse: Dense,
@@ -263,7 +263,7 @@ impl Raised {
         factor.team()
     }
 
-    /// The same for a vector that no rank has whole ([`Gram::solve_shares`]). Collective.
+    /// x ← (A + C Cᵀ)⁺ x for a vector of columns that no rank has whole ([`Gram::solve_shares`]). Collective.
     pub fn solve_shares(&self, x: &mut [f64]) {
         let [rows, motions] = &self.shared;
         let comm = self.team().comm();

@@ -1,4 +1,4 @@
-//! What rounding of the input may be in the work of rows on the motions of a body (`noise`).
+//! Work of rows on the motions of a body that may be rounding of the input (`noise`).
 
 use mpi::topology::SimpleCommunicator;
 

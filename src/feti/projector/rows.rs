@@ -82,9 +82,10 @@ impl Rows {
         Rows::of_matrix(Csr::from_triplets(n, &entries))
     }
 
-    /// The same without entries below `part` of the largest in their row, each relative to the `scale` of its column: a
-    /// body that moves across a normal which rounding has turned a little does no work there. Sums below `part` of
-    /// their terms are left out, too: a body that touches itself moves along with what it touches.
+    /// Rows from (row, column, value) entries, repeated ones added up, without entries below `part` of the largest in
+    /// their row, each relative to the `scale` of its column: a body that moves across a normal which rounding has
+    /// turned a little does no work there. Sums below `part` of their terms are left out, too: a body that touches
+    /// itself moves along with what it touches.
     pub fn without_rounding(
         n: usize,
         entries: &[(u32, u32, f64)],
@@ -172,17 +173,17 @@ impl Rows {
         }
     }
 
-    /// The same with the numbers that columns have here in the place of their names.
+    /// These rows with the numbers that columns have here in the place of their names.
     pub fn numbered(&self, known: &Known) -> Rows {
         self.renamed(|name| known.number(name))
     }
 
-    /// The same with the names of columns in the place of their numbers.
+    /// These rows with the names of columns in the place of their numbers.
     pub fn named(&self, known: &Known) -> Rows {
         self.renamed(|column| known.name(column))
     }
 
-    /// The same with other numbers for the columns, in the same order.
+    /// These rows with other numbers for the columns, in the same order.
     fn renamed(&self, name: impl Fn(u32) -> u32) -> Rows {
         let old = &*self.layout;
         let layout = Layout {

@@ -34,7 +34,7 @@ pub struct Sharing<'a> {
     pub copies: usize,
     /// The rank of each body; empty if that does not matter.
     pub home: &'a [u32],
-    /// What this rank adds to products comes from these rows; `None`: from anywhere.
+    /// Rows from which this rank's contributions to products come; `None`: they come from anywhere.
     pub rows: Option<&'a Rows>,
     /// Columns that this rank has to know besides those of rows and fronts; `None`: it knows all.
     pub known: Option<Vec<u32>>,
@@ -65,8 +65,9 @@ impl Shape {
         Shape::ordered(comm, lists, start, whole, sharing)
     }
 
-    /// The same for matrices with entries only in the blocks that `order` makes, with the positions of the bodies where
-    /// they are known. It is not asked if there are few columns. Collective.
+    /// The shape of matrices with entries only in the blocks that `order` makes, with the positions of the bodies where
+    /// they are known. `order` is not called if there are few columns. `lists` and `start` are those of [`Shape::new`].
+    /// Collective.
     pub fn ordered(
         comm: &SimpleCommunicator,
         lists: &[Vec<u32>],
@@ -131,9 +132,9 @@ impl Shape {
 /// The bodies in whose rows of the matrix a rank has entries.
 struct Here<'a> {
     start: &'a [usize],
-    /// Those with a column that it has in the factor.
+    /// Bodies with a column that this rank has in the factor.
     owned: Set,
-    /// Those that its rows of G touch: it adds to blocks between them.
+    /// Bodies that this rank's rows of G touch: it adds to blocks between them.
     touched: Set,
 }
 

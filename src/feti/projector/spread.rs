@@ -25,7 +25,7 @@ pub struct Spread {
     halo: Option<Halo>,
     /// The columns that this rank has.
     own: PetscVec,
-    /// The same with the ghosts.
+    /// Values at the columns that this rank has, and at its ghosts.
     shares: RefCell<Vec<f64>>,
     /// A number for every column that is known; only those of this rank's rows are in use.
     work: RefCell<Vec<f64>>,

@@ -17,7 +17,7 @@ use crate::substructures::Substructures;
 use base::linalg::csr::Csr;
 use parallel::team::Team;
 
-/// What a subdomain shares: its matrix is `factor` · R K Rᵀ, K being the matrix of local subdomain `first`.
+/// Likeness of a subdomain to local subdomain `first`: its matrix is `factor` · R K Rᵀ, K being the matrix of `first`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Likeness {
     /// The first subdomain of this kind.

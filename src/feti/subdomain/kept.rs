@@ -1,5 +1,5 @@
-//! What is kept of the subdomains of a set-up for the next one: factors where only rows between bodies are replaced,
-//! analyses of patterns where matrices have other numbers, too.
+//! Parts of the subdomains of a set-up that are kept for the next one: factors where only rows between bodies are
+//! replaced, analyses of patterns where matrices have other numbers, too.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub(crate) struct Kept {
     coarse: Vec<Pattern>,
 }
 
-/// What of one subdomain is still right.
+/// The kept parts of one subdomain that are still right in the next set-up.
 #[derive(Default)]
 pub(crate) struct Still {
     /// The form of its operators.
@@ -31,7 +31,7 @@ pub(crate) struct Still {
     pub analysed: Option<Arc<Analysed>>,
 }
 
-/// What the operators of a subdomain depend on beside its matrix.
+/// The data beside its matrix on which the operators of a subdomain depend.
 #[derive(PartialEq)]
 struct Interface {
     delta: Vec<u32>,
@@ -74,7 +74,7 @@ impl Kept {
         }
     }
 
-    /// The same without the factors, for matrices with the same patterns and other numbers.
+    /// The kept parts without the factors, for matrices with the same patterns and other numbers.
     pub fn patterns(self) -> Kept {
         Kept {
             locals: None,
@@ -87,7 +87,7 @@ impl Kept {
         &self.coarse
     }
 
-    /// What is still right with other rows, for each local subdomain: nothing where its interface has changed.
+    /// The parts of each local subdomain that are still right with other rows: nothing where its interface has changed.
     pub fn still(&self, jump: &Jump) -> Vec<Still> {
         let of = |(j, interface): (usize, &Interface)| {
             if *interface != Interface::of(jump, j) {

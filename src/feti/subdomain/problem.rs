@@ -219,8 +219,8 @@ impl LocalProblem {
         Ok(out)
     }
 
-    /// The same subdomain with more primal functionals, Σ weights · u over dual dofs each. `k` is the very matrix that
-    /// this problem was made of, and no multiple of it. S and the factor are shared with this one; only T, Ψ and Σ are
+    /// This subdomain with more primal functionals, Σ weights · u over dual dofs each. `k` is the very matrix that this
+    /// problem was made of, and no multiple of it. S and the factor are shared with this one; only T, Ψ and Σ are
     /// computed again. Sparse solves become dense matrices, for which `k` is factored; lower triangles stay lower
     /// triangles.
     pub fn constrained<'a>(

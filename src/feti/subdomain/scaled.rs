@@ -9,8 +9,8 @@
 //! on the stiffness is applied through this type. All multiples have the same [`Gamma`], which `gamma` gives; turned
 //! copies have one of their own, because it has Ψ.
 //!
-//! What is not shared among turned copies: the blocks Z_cᵀ S Z_c of the coarse-corrected preconditioner, and operators
-//! with adaptive constraints, which are made of the copy's own matrix.
+//! Turned copies do not share the blocks Z_cᵀ S Z_c of the coarse-corrected preconditioner, nor operators with adaptive
+//! constraints, which are made of the copy's own matrix.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub struct Scaled {
     turned: Option<Arc<Turned>>,
 }
 
-/// What a turned copy has of its own.
+/// The data of a turned copy that is its own: the turn, and the [`Gamma`] with the turned Ψ.
 #[derive(Debug)]
 struct Turned {
     turn: Turn,

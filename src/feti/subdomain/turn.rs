@@ -1,4 +1,4 @@
-//! The same orthogonal matrix Q at every node of a subdomain: R = diag(Q, …, Q).
+//! The orthogonal matrix R = diag(Q, …, Q) of a subdomain, with the same Q at every node.
 //!
 //! All components of a node stand side by side, in the local dofs as on Γ. Averages are sorted by component first.
 

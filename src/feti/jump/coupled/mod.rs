@@ -40,8 +40,9 @@ pub struct Coupled {
     steep: bool,
     active: Vec<bool>,
     dependencies: Option<Dependencies>,
-    /// What applies B_D.
+    /// B_D by a factor of a matrix on dofs, which takes precedence over `by_rows`.
     by_dofs: Option<ByDofs>,
+    /// B_D by a factor of G.
     by_rows: Option<ByRows>,
 }
 
