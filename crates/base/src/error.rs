@@ -4,12 +4,12 @@
 use std::fmt;
 use std::io::Write;
 
-/// What went wrong, and with it the exit code of the command-line program.
+/// The kind of an error, which determines the exit code of the command-line program.
 #[derive(Debug, Clone)]
 pub enum Error {
-    /// What the user wrote cannot be solved as written (exit code 2).
+    /// The input of the user cannot be solved as written (exit code 2).
     Input(String),
-    /// What a caller of the C API handed over cannot be taken (exit code 2).
+    /// An argument that a caller of the C API handed over cannot be taken (exit code 2).
     Argument(Fault, String),
     /// A matrix that is no stiffness matrix: not positive semidefinite (exit code 2).
     Unfit(String),
@@ -28,7 +28,7 @@ pub enum Error {
     },
 }
 
-/// What is wrong with an argument, as PETSc tells such errors apart; the number is its `PETSC_ERR_*`.
+/// The fault of an argument, as PETSc tells such errors apart; the number is its `PETSC_ERR_*`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fault {

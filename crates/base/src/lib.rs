@@ -1,4 +1,4 @@
-//! What every crate of fetifeti stands on: the [`Error`] with its exit code, and small linear algebra without MPI and
+//! The base of every crate of fetifeti: the [`Error`] with its exit code, and small linear algebra without MPI and
 //! without PETSc (`linalg`).
 
 pub mod error;

@@ -17,13 +17,13 @@ const SHORTER: f64 = 0.95;
 /// Solves for each factorisation, four for an iteration: what is dealt out is the work of both.
 const SOLVES: f64 = 20.0;
 
-/// Number of operations of a factorisation in the time in which a solve reads an entry of the factor, up and down, …
+/// Number of operations of a factorisation in the time in which a solve reads an entry of the factor, up and down.
 const READ: f64 = 40.0;
 
-/// … in which a number goes from one rank to another, …
+/// Number of operations of a factorisation in the time in which a number goes from one rank to another.
 const SENT: f64 = 20.0;
 
-/// … and in which a message does that has none.
+/// Number of operations of a factorisation in the time in which an empty message goes from one rank to another.
 const LATENCY: f64 = 4e4;
 
 /// The work of a front.
@@ -32,7 +32,7 @@ fn work_of(front: &Front) -> f64 {
     front.flops() + SOLVES * READ * w * (0.5 * w + m)
 }
 
-/// What it takes to send what a front leaves to its parent, and in solves there and back.
+/// The cost of the messages between a front and its parent: its update, and in solves the way there and back.
 fn way_of(front: &Front) -> f64 {
     let m = front.below.len() as f64;
     SENT * 0.5 * m * m + SOLVES * 2.0 * (LATENCY + SENT * m)

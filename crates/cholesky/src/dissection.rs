@@ -15,14 +15,14 @@ use base::linalg::csr::Csr;
 /// outweighs the fill that cutting further would save.
 const LEAF: usize = 12;
 
-/// The same for blocks of dofs, whose factor is small and is solved with often: below it a front takes more time than
-/// its entries.
+/// Sets of blocks with at most this many dofs are eliminated as one dense front: the factor of blocks is small and is
+/// solved with often, and below this size a front takes more time than its entries.
 const LEAF_OF_BLOCKS: usize = 48;
 
 /// Cost of a separator of a cut that has everything on one side, relative to one between equal halves.
 const ONE_SIDED: f64 = 5.0;
 
-/// What the vertices of a graph of blocks are.
+/// The vertices of a graph of blocks.
 pub struct Vertices {
     /// Number of dofs of each.
     pub sizes: Vec<usize>,
@@ -165,7 +165,7 @@ impl<'a> Cutting<'a> {
         self.sizes.map_or(set.len(), of)
     }
 
-    /// What a cut costs: the size of its separator, more if the halves differ.
+    /// The cost of a cut: the size of its separator, more if the halves differ.
     fn cost(&self, (lower, upper, separator): &Halves) -> f64 {
         let [l, u, s] = [lower, upper, separator].map(|set| self.n_dofs(set) as f64);
         let one_sided = (l - u) / (l + u).max(1.0);

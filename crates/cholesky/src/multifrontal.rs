@@ -45,8 +45,8 @@ impl PartialCholesky {
         PartialCholesky::inside(k, &symbolic, symbolic.clone())
     }
 
-    /// The same, but stores only the part of the factor that `inside` lists: this part can
-    /// [`solve`](Self::solve), but not condense.
+    /// Factors the interior of `k` and returns the factor with S, but stores only the part of the factor that `inside`
+    /// lists: this part can [`solve`](Self::solve), but not condense.
     pub fn inside(
         k: &Csr,
         symbolic: &Symbolic,
@@ -111,7 +111,7 @@ impl PartialCholesky {
 pub(super) enum Pivots<'a> {
     /// None may.
     Regular,
-    /// Those below this fraction of the diagonal entry are replaced; the list takes their dofs.
+    /// Pivots below this fraction of the diagonal entry are replaced; the list takes their dofs.
     Above(f64, &'a mut Vec<u32>),
 }
 
@@ -140,7 +140,7 @@ pub(super) struct Elimination<'a> {
     pub panels: Vec<f64>,
     /// S so far.
     s: Dense,
-    /// What fronts leave to their parents: lower triangles of the rows below, until the parents take them.
+    /// Updates of fronts for their parents: lower triangles of the rows below, until the parents take them.
     updates: Vec<Update>,
     /// Memory of updates that parents have taken.
     spare: Vec<Vec<f64>>,

@@ -8,7 +8,7 @@ use super::team::{Run, Team};
 use base::linalg::sorted::distinct;
 
 impl Team {
-    /// The same with numbers for the dofs in `known` alone, in their order, and with the own fronts alone. `known`
+    /// This team with numbers for the dofs in `known` alone, in their order, and with the own fronts alone. `known`
     /// increases, and has all dofs in the rows of the own fronts.
     ///
     /// # Panics

@@ -1,4 +1,4 @@
-//! What a semidefinite matrix maps to zero, from its factor.
+//! Null vectors of a semidefinite matrix, from its factor.
 //!
 //! Let k be a dof that [`PartialCholesky::semidefinite`] has left out, J the others before it. With A_JJ = L_JJ L_JJᵀ
 //! and the row l = A_kJ L_JJ⁻ᵀ of the factor,

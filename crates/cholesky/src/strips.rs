@@ -95,7 +95,7 @@ impl Update {
         }
     }
 
-    /// What a message has of it.
+    /// The update as it goes in a message, for an `order` of the triangle.
     pub fn packed(&self, order: usize) -> Vec<f64> {
         let mut out = Vec::with_capacity(order * (order + 1) / 2);
         (0..order).for_each(|j| out.extend_from_slice(self.column(order, j)));

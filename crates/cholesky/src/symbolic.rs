@@ -88,7 +88,8 @@ impl Symbolic {
         Symbolic::with_supernodes(k, interface, &supernodes)
     }
 
-    /// The same for a given order of the interior: each set of dofs becomes one front, in the order of elimination.
+    /// Analyses the pattern of `k` for a given order of the interior: each set of dofs becomes one front, in the order
+    /// of elimination.
     pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
         analysed();
         let n = k.n();
@@ -166,8 +167,8 @@ impl Symbolic {
         }
     }
 
-    /// The same for blocks of dofs, all coupled: `blocks` has the pattern of the blocks and `dofs` their dofs, n in
-    /// all. Sets of blocks become fronts; blocks in no set have no dofs.
+    /// Analyses a pattern of blocks of dofs, all coupled: `blocks` has the pattern of the blocks and `dofs` their dofs,
+    /// n in all. Sets of blocks become fronts; blocks in no set have no dofs.
     pub fn with_blocks(
         blocks: &Csr,
         sets: &[Vec<u32>],
@@ -266,7 +267,7 @@ impl Symbolic {
         }
     }
 
-    /// The same without the rows of the interface: the structure of a factor that solves with K_II alone.
+    /// This structure without the rows of the interface: the structure of a factor that solves with K_II alone.
     pub(crate) fn inside(&self) -> Symbolic {
         let n = self.n_interior() as u32;
         let fronts = self.fronts.iter().map(|front| {
@@ -276,7 +277,7 @@ impl Symbolic {
         Symbolic::of_factor(self.interior.clone(), &self.interface, fronts)
     }
 
-    /// The same with room for the panels of these fronts alone, in this order.
+    /// This structure with room for the panels of these fronts alone, in this order.
     pub(crate) fn with_panels(mut self, own: &[usize]) -> Symbolic {
         self.storage = 0;
         for &f in own {

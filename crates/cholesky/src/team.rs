@@ -22,7 +22,7 @@ pub struct Team {
     pub(super) symbolic: Arc<Symbolic>,
     /// The own fronts, in the order in which this rank eliminates them.
     pub(super) own: Vec<usize>,
-    /// The same in parts, between messages.
+    /// The own fronts in parts, between messages.
     pub(super) runs: Vec<Run>,
     /// Where each dof is kept.
     pub(super) places: Vec<Place>,

@@ -1,4 +1,4 @@
-//! What the command line may say, as clap reads it. The comments on commands and fields are the help that users see.
+//! The command line as clap reads it. The comments on commands and fields are the help that users see.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use lab::baselines::{Benchmark, Comparison, BASELINES};
 use report::destination::Destination;
 use report::output;
 
-/// What ends the help of the program.
+/// The end of the help of the program.
 const PETSC: &str = "\
 PETSc options have one dash and stand anywhere on the line, with their values: -fetifeti_ksp_rtol 1e-10.
 fetifeti -help lists ours with PETSc's; they are also read from PETSC_OPTIONS and -options_file.
@@ -20,7 +20,7 @@ On several ranks: mpirun -n N fetifeti solve SCENE ... gives the same answer.
 Exit codes: 0 solved, 1 not converged (what was written is partial), 2 bad input, 3 the environment \
 (PETSc, MPI, disk).";
 
-/// What ends the help of a command that solves something.
+/// The end of the help of a command that solves something.
 const OPTIONS: &str =
     "PETSc options have one dash and stand anywhere on the line: fetifeti -help lists them.";
 
@@ -89,13 +89,13 @@ pub enum Command {
     /// One method of a comparison, in a process of its own (not for users)
     #[command(hide = true)]
     Baseline {
-        /// What to run, as the parent process wrote it
+        /// File with the job, as the parent process wrote it
         job: PathBuf,
     },
     /// One measurement of a study, in a process of its own (not for users)
     #[command(hide = true)]
     Measure {
-        /// What to measure, as the parent process wrote it
+        /// File with the task, as the parent process wrote it
         task: PathBuf,
     },
 }
@@ -212,7 +212,7 @@ pub struct Compare {
 }
 
 impl Compare {
-    /// What is asked for; the jobs get PETSc's options, too.
+    /// The comparison that is asked for; the jobs get PETSc's options, too.
     pub fn wanted(self, petsc: Vec<String>) -> Comparison {
         Comparison {
             scene: self.scene,

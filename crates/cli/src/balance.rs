@@ -25,7 +25,7 @@ struct Sums {
     reaction: Wrench,
     /// The sizes of the terms of K u at given values.
     terms: f64,
-    /// What the body's motions as a whole cost ([`Forces::resistance`](scene::Forces::resistance)).
+    /// The energies of the body's motions as a whole ([`Forces::resistance`](scene::Forces::resistance)).
     resistance: [f64; 6],
 }
 
@@ -180,14 +180,14 @@ fn supported(scene: &Scene) -> Vec<usize> {
 /// Terms that cancel leave this part of their sizes as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// What the iteration leaves.
+/// The error that the iteration leaves.
 ///
 /// For a motion v of a body as a whole that is zero at given values, the imbalance along it is vᵀ (K u − f + Bᵀ λ):
 /// with the errors of u and λ at most a few times ‖u − u*‖_K ‖v‖_K (docs/theory.md, section 8). A stiff body that bears
 /// little has a large ‖v‖_K, and its reaction few digits; bodies that nothing holds have none but rounding, since the
 /// iteration keeps Gᵀ λ = e.
 struct Error {
-    /// What is permitted relative to the forces.
+    /// The imbalance that is permitted, relative to the forces.
     relative: f64,
     /// The estimate of ‖u − u*‖_K, times [`SAFETY`].
     energy: f64,

@@ -45,7 +45,7 @@ pub(super) struct Course {
     pub scene: Option<Scene>,
     /// The forces on every body in balance, on rank 0.
     pub balances: Vec<BodyBalance>,
-    /// What is not in balance, on rank 0.
+    /// A warning about the bodies that are not in balance, on rank 0.
     pub unbalanced: Option<String>,
     /// In elasticity with contact, how far the sides that touch have slid since the pairing was made.
     pub slides: Option<contact::Slides>,

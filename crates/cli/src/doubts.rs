@@ -1,4 +1,4 @@
-//! What of an answer is arbitrary, and what makes it doubtful: motions that nothing holds, displacements beyond the
+//! Doubts about an answer, and parts of it that are arbitrary: motions that nothing holds, displacements beyond the
 //! model.
 
 use super::course::Course;
@@ -19,10 +19,10 @@ const NAMED: usize = 4;
 /// Displacements of more times the size of the model are beyond what its author can mean.
 const FAR: f64 = 1.0;
 
-/// So are sides that slide by more of their faces, …
+/// Sliding by more than this number of the side's faces is beyond what the author of a model can mean.
 const FACES: f64 = 10.0;
 
-/// … and faces that turn by more degrees.
+/// A turn of a face by more than this number of degrees is beyond what the author of a model can mean.
 const DEGREES: f64 = 45.0;
 
 /// Motions for a record.

@@ -10,7 +10,7 @@ use petsc::Session;
 use report::json::certified::{self, Certified, Discretisation};
 use scene::Scene;
 
-/// What estimates the discretisation error, if somebody asked for it.
+/// The estimator of the discretisation error, if somebody asked for it.
 pub(super) struct Early {
     estimator: Option<Estimator>,
     /// Seconds of making it, and of its last estimate.

@@ -133,11 +133,11 @@ fn list_options(session: &Session) -> Result<()> {
     ksp.set_from_options()
 }
 
-/// What `make fuzz` feeds; cargo-fuzz compiles with this condition.
+/// The readers that `make fuzz` feeds; cargo-fuzz compiles with this condition.
 #[cfg(fuzzing)]
 #[path = "../../../tests/fuzz/readers.rs"]
 pub mod fuzz;
-/// What `make soak` runs.
+/// The random scenes that `make soak` runs.
 #[cfg(any(fuzzing, test))]
 #[path = "../../../tests/fuzz/soak.rs"]
 pub mod soak;

@@ -7,7 +7,7 @@ use petsc::Session;
 use report::json::{Multipliers, PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 use scene::{fits, Scene};
 
-/// What `--json` of `plan` writes. Collective.
+/// The record that `plan --json` writes. Collective.
 pub(super) fn report(session: &Session, scene: &Scene, sizes: &Sizes) -> Result<PlanReport> {
     let plan = scene.plan();
     let left = session.agree(fits::left(session, None))?;

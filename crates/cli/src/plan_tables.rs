@@ -95,7 +95,7 @@ pub(super) fn interfaces(scene: &Scene, plan: &Plan) -> String {
     format!("{table}{}\n{surfaces}", more(faces.count(), "faces"))
 }
 
-/// What the size of a side is called.
+/// The word for the size of a side.
 fn size(scene: &Scene) -> &'static str {
     if scene.dim() == 2 && !scene.form.is_axial() {
         "length"

@@ -24,7 +24,7 @@ pub(super) struct Renewed<'a> {
     start: Displaced,
 }
 
-/// What a renewal costs: seconds of set-up, and subdomains that were factored, over all ranks.
+/// The cost of a renewal: seconds of set-up, and subdomains that were factored, over all ranks.
 type Cost = (f64, usize);
 
 impl<'a> Renewed<'a> {
@@ -42,7 +42,7 @@ impl<'a> Renewed<'a> {
         self.present.as_deref().unwrap_or(self.scene)
     }
 
-    /// The same, if contacts are renewed.
+    /// The scene with the present contacts, if contacts are renewed.
     pub fn into_scene(self) -> Option<Scene> {
         self.present.map(|scene| *scene)
     }

@@ -3,7 +3,7 @@
 //! Open MPI takes 0.3 s to begin: it starts a daemon that would start more processes, and looks for networks, one of
 //! which is timed for 0.2 s. A process that is alone needs neither. Other MPI libraries ignore these settings.
 
-/// What launchers tell the processes that they start.
+/// Environment variables that launchers set for the processes that they start.
 const LAUNCHED: [&str; 5] = [
     "OMPI_COMM_WORLD_SIZE",
     "PMIX_RANK",

@@ -111,7 +111,7 @@ pub(super) fn lines(notes: &[String]) -> String {
 struct FromDeck<'a> {
     deck: &'a DeckScenes,
     step: usize,
-    /// What earlier steps have printed.
+    /// The tables that earlier steps have printed.
     printed: Vec<NodePrint>,
 }
 

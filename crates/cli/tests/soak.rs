@@ -3,7 +3,7 @@
 use crate::soak::{fate, Fate};
 use crate::testing::with_session;
 
-/// What the scene of each seed comes to.
+/// Checks the fate of the scene of each seed.
 fn fates(seeds: &'static [u64], right: fn(&Fate) -> bool) {
     with_session(move |session| {
         let dir = std::env::temp_dir().join(format!("fetifeti-soak-{}", std::process::id()));

@@ -42,7 +42,7 @@ impl Card {
         }
     }
 
-    /// The same with other parameters and other lines.
+    /// This card with other parameters and other lines.
     pub fn with(&self, params: Vec<Param>, data: Range<usize>) -> Card {
         Card::new(&self.keyword, self.place, params, data)
     }
@@ -73,7 +73,7 @@ pub(super) struct Cards {
     pub resolution: f64,
 }
 
-/// What takes the place of the cards of a deck.
+/// The cards and lines that take the place of the cards of a deck.
 pub(super) struct Flattened {
     pub lines: Vec<Line>,
     /// The text in which the lines are.

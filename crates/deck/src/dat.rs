@@ -5,7 +5,7 @@ use super::step::{Printed, Totals};
 use base::linalg::vec3::dot;
 use std::fmt::Write;
 
-/// What a [`Table`] holds.
+/// The quantity in a [`Table`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Displacements (U).
@@ -19,7 +19,7 @@ pub enum Quantity {
 /// A table of a `.dat` file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// What it holds.
+    /// The quantity in the table.
     pub quantity: Quantity,
     /// The node set, in capitals.
     pub set: String,

@@ -2,7 +2,7 @@
 
 use elements::kind::CellKind;
 
-/// What an element models.
+/// The mechanical model of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Model {
     /// A solid.
@@ -47,7 +47,7 @@ macro_rules! elements {
                 match self { $(ElementType::$name => CellKind::$kind),* }
             }
 
-            /// What it models.
+            /// The mechanical model of this type.
             pub const fn model(self) -> Model {
                 match self { $(ElementType::$name => Model::$model),* }
             }
@@ -102,7 +102,7 @@ impl ElementType {
         Self::ALL.iter().copied().find(|e| e.name() == name)
     }
 
-    /// What its integration means beside full integration, in a sentence for reports.
+    /// The effect of its integration compared with full integration, in a sentence for reports.
     pub const fn sentence(self) -> &'static str {
         match (self.integration(), self.kind().order()) {
             (Integration::Full, _) => "is integrated fully",
@@ -154,7 +154,7 @@ pub(super) fn shape(name: &str) -> Option<CellKind> {
     })
 }
 
-/// What an element is whose type is not solved, for the message.
+/// The sort of an element whose type is not solved, for the message.
 pub(super) fn what_is(name: &str) -> &'static str {
     const BY_BEGINNING: &[(&str, &str)] = &[
         ("DC3D", "elements of heat"),

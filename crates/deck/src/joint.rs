@@ -1,4 +1,4 @@
-//! What joins the bodies of a deck: ties, contact pairs, surface interactions.
+//! Joints between the bodies of a deck: ties, contact pairs, surface interactions.
 
 use super::place::{Note, Place};
 
@@ -35,9 +35,9 @@ pub struct Tie {
 pub enum Adjust {
     /// None.
     No,
-    /// Those whose gap is at most that number, and those that penetrate.
+    /// The nodes whose gap is at most that number, and those that penetrate.
     Within(f64),
-    /// Those nodes, by increasing places.
+    /// The nodes of this list, by increasing places.
     Nodes(Vec<u32>),
 }
 
@@ -48,7 +48,8 @@ pub enum ContactKind {
     NodeToSurface,
     /// The sides of the slave, at points of integration, against the sides of the master.
     SurfaceToSurface,
-    /// The same with multipliers instead of springs (MORTAR, LINMORTAR, PGLINMORTAR).
+    /// The sides of the slave, at points of integration, against the sides of the master, with multipliers instead of
+    /// springs (MORTAR, LINMORTAR, PGLINMORTAR).
     Mortar,
     /// The nodes of the slave without mass (MASSLESS).
     Massless,

@@ -1,12 +1,13 @@
-//! What becomes of each keyword of Abaqus and CalculiX: read, ignored with a reason, refused with a reason.
+//! The treatment of each keyword of Abaqus and CalculiX: read, ignored with a reason, refused with a reason.
 //!
-//! What changes the answer is refused. Keywords that are not in this table are refused as unknown.
+//! Keywords that change the answer are refused unless they are read; those that are not in this table are unknown, and
+//! refused as such.
 
 use super::cards::squeeze;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// What becomes of a keyword.
+/// The treatment of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// It is read.

@@ -1,4 +1,4 @@
-//! What a deck says, checked: every name is resolved to places, every number is finite.
+//! The contents of a deck, checked: every name is resolved to places, every number is finite.
 
 use super::element::{ElementType, Model};
 use super::joint::{ContactPair, Interaction, Tie};
@@ -39,11 +39,11 @@ pub struct Deck {
     pub interactions: Vec<Interaction>,
     /// The steps, each with everything that holds at its end.
     pub steps: Vec<Step>,
-    /// What was ignored since it changes no displacement.
+    /// Notes on keywords that were ignored since they change no displacement.
     pub ignored: Vec<Note>,
-    /// What is solved as something else than CalculiX solves it.
+    /// Notes on keywords that are solved as something else than CalculiX solves them.
     pub replaced: Vec<Note>,
-    /// What became of its parts and instances.
+    /// Notes on its parts and instances, and what became of them.
     pub placed: Vec<Note>,
 }
 
@@ -109,8 +109,8 @@ pub struct Term {
 }
 
 impl Deck {
-    /// What the elements model. Decks are either of solids, plane or axisymmetric; plane decks may mix plane strain and
-    /// plane stress, and then this is what the first element models.
+    /// The mechanical model of the elements. Decks are either of solids, plane or axisymmetric; plane decks may mix
+    /// plane strain and plane stress, and then this is the model of the first element.
     pub fn model(&self) -> Model {
         self.elements.first().map_or(Model::Solid, |e| e.model())
     }

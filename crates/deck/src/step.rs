@@ -69,13 +69,13 @@ pub struct Pressure {
 pub struct BodyLoad {
     /// The cells, by increasing places.
     pub cells: Vec<u32>,
-    /// What it is.
+    /// The kind of the load.
     pub kind: BodyLoadKind,
     /// Where it stands.
     pub place: Place,
 }
 
-/// What a [`BodyLoad`] is.
+/// The kind of a [`BodyLoad`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BodyLoadKind {
     /// An acceleration: density times it is the force by volume.
@@ -91,7 +91,7 @@ pub enum BodyLoadKind {
     },
 }
 
-/// What a *NODE PRINT prints.
+/// A quantity that a *NODE PRINT prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Printed {
     /// Displacements (U).
@@ -119,7 +119,7 @@ pub struct NodePrint {
     pub nset: String,
     /// Its nodes in the order in which they are printed.
     pub nodes: Vec<u32>,
-    /// What is printed.
+    /// The quantities that are printed.
     pub printed: Vec<Printed>,
     /// Whether sums are printed.
     pub totals: Totals,

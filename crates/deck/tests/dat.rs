@@ -1,6 +1,6 @@
 use super::*;
 
-/// What CalculiX 2.20 prints for `block.inp` (`ccx block`).
+/// The tables that CalculiX 2.20 prints for `block.inp` (`ccx block`).
 const BLOCK: &str = include_str!("block.dat");
 
 #[test]

@@ -67,7 +67,7 @@ impl Form {
         plane == Plane::Axial
     }
 
-    /// What a piece of a plane cell or side at this point is multiplied by: the way around the axis in rings, else 1.
+    /// The factor of a piece of a plane cell or side at this point: the way around the axis in rings, else 1.
     pub fn around(&self, point: [f64; 3]) -> f64 {
         if self.is_axial() {
             TAU * point[0]

@@ -80,7 +80,7 @@ impl CellMesh {
         }
     }
 
-    /// The same mesh in `n` other subdomains, given that of every cell, and what they share.
+    /// This mesh in `n` other subdomains, given the subdomain of every cell and the interface of the subdomains.
     #[must_use]
     pub fn partitioned(mut self, of_cell: Vec<u32>, n: usize, shared: Interface) -> CellMesh {
         let sharing = Sharing::new(&self.cells, &of_cell, n, self.points.len());

@@ -8,7 +8,7 @@ use super::file::{Members, MeshFile};
 use elements::kind::CellKind;
 
 impl MeshFile {
-    /// The same file, with all cells of bodies of dimension `dim` counter-clockwise if they are plane.
+    /// This file, with all cells of bodies of dimension `dim` counter-clockwise if they are plane.
     #[must_use]
     pub fn counter_clockwise(mut self, dim: usize) -> MeshFile {
         if dim == 2 {
@@ -63,7 +63,7 @@ fn backwards(kind: CellKind) -> impl Iterator<Item = usize> {
     corners.chain(middles).chain(2 * n..all)
 }
 
-/// What becomes of a side when the nodes run the other way round.
+/// The number of a side when the nodes run the other way round.
 pub fn side_backwards(kind: CellKind, side: u8) -> u8 {
     kind.corners() as u8 - 1 - side
 }

@@ -1,5 +1,5 @@
-//! What makes a mesh of cells unfit: nodes that are there twice, nodes that hang on the side of a cell, and cells that
-//! lie on each other.
+//! Defects of a mesh of cells: nodes that are there twice, nodes that hang on the side of a cell, and cells that lie on
+//! each other.
 
 use std::collections::HashSet;
 
@@ -23,7 +23,7 @@ const ON_ARC: f64 = 0.02;
 pub struct Defect {
     /// The first place, as a sentence without its end.
     pub first: String,
-    /// What was expected instead.
+    /// The proper state that was expected instead.
     pub expected: &'static str,
     /// Number of places.
     pub places: usize,

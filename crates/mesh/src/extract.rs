@@ -14,7 +14,7 @@ use base::{Error, Result};
 /// Most corners of a side of a cell.
 const CORNERS: usize = 4;
 
-/// What stands for "not in the body at hand".
+/// The number that stands for "not in the body at hand".
 const NONE: u32 = u32::MAX;
 
 /// Takes the meshes of bodies out of a file. The time for a body grows with its own cells, not with those of the file.

@@ -51,7 +51,7 @@ pub fn text(path: &Path, what: &str) -> Result<String> {
 /// Largest coordinate: volumes and their products must be numbers.
 pub const FARTHEST: f64 = 1e50;
 
-/// What a reader of mesh files returns, whatever the format.
+/// The contents of a mesh file, whatever the format.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshFile {
     /// The name of the file, for messages.
@@ -105,7 +105,7 @@ impl MeshFile {
 pub struct Group {
     /// Its name; where the file numbers a group and does not name it, the number.
     pub name: String,
-    /// What it consists of.
+    /// The members of the group.
     pub members: Members,
 }
 

@@ -117,7 +117,7 @@ fn parts_hang_together_by_nodes() {
     assert_eq!(row.connected(&[0, 1, 2, 3, 4]), [[0, 1, 2, 3, 4]]);
 }
 
-/// What extraction has found out about sides is what is found anew.
+/// The adjacency that extraction has found is the one that is found anew.
 #[test]
 fn adjacency_is_that_of_the_cells() {
     let mut row = Extractor::new(file(), 2);

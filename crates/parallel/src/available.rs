@@ -36,7 +36,7 @@ fn of_machine() -> Option<f64> {
     kilobytes(&read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// What is left of RLIMIT_AS.
+/// The memory that is left of RLIMIT_AS.
 fn of_process() -> Option<f64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let line = limits
@@ -47,7 +47,7 @@ fn of_process() -> Option<f64> {
     Some((limit - taken).max(0.0))
 }
 
-/// What is left of the limits of the control groups of this process below the directory `root`, `/` in life.
+/// The memory that is left of the limits of the control groups of this process below the directory `root`, `/` in life.
 fn of_group(root: &Path) -> Option<f64> {
     let groups = read_to_string(root.join("proc/self/cgroup")).ok()?;
     let mounted = root.join("sys/fs/cgroup");
@@ -85,7 +85,7 @@ const VERSION_2: Names = Names {
     cache: ["inactive_file ", "active_file "],
 };
 
-/// What is no limit in version 1, a number near 2⁶³.
+/// A number of bytes from which on a limit is none: version 1 then has a number near 2⁶³.
 const NO_LIMIT: f64 = 1e18;
 
 /// The least that is left in the group `own` and in those around it, which have limits, too. In a container the groups

@@ -14,7 +14,7 @@ use crate::traffic;
 pub struct Address {
     /// The other rank.
     pub rank: i32,
-    /// What tells the messages between two ranks apart that are on their way at the same time.
+    /// The number that tells the messages between two ranks apart that are on their way at the same time.
     pub tag: i32,
 }
 

@@ -9,7 +9,7 @@ use std::ops::{AddAssign, Sub};
 /// Bytes of a double.
 const NUMBER: u64 = 8;
 
-/// What one rank has sent.
+/// The messages and bytes that one rank has sent.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Messages to single ranks.

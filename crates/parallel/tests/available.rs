@@ -3,7 +3,7 @@
 use super::*;
 use std::fs;
 
-/// What a tree is, its files with their texts, and the bytes that are left in it.
+/// A case: a tree in words, its files with their texts, and the bytes that are left in it.
 type Case = (
     &'static str,
     &'static [(&'static str, &'static str)],

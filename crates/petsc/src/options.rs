@@ -311,7 +311,7 @@ impl Options {
         self.any_but("")
     }
 
-    /// The same, where the option `name` does not count.
+    /// Whether the user has set any option with this prefix other than the option `name`.
     pub fn any_but(&self, name: &str) -> Result<bool> {
         let start = c_string(&format!("-{}", self.prefix));
         let but = match name {

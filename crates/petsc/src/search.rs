@@ -1,4 +1,4 @@
-//! What a long search for eigenvalues tells of its course.
+//! The course of a long search for eigenvalues.
 
 use std::time::Duration;
 

@@ -18,7 +18,7 @@
 //! }
 //! ```
 //!
-//! The same operator that owns its factor is fine:
+//! An operator that owns its factor is fine:
 //!
 //! ```
 //! use fetifeti_petsc::{Mat, Session, ShellMat, Vec};

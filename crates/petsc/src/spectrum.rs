@@ -88,13 +88,13 @@ impl ShellMat for InnerProduct {
     }
 }
 
-/// Products with the operator before an eigenvalue may count as settled, …
+/// Products with the operator before an eigenvalue may count as settled.
 const PRODUCTS: usize = 2_400;
 
-/// … number of restarts over which it then hardly changes, …
+/// Number of restarts over which an eigenvalue hardly changes before it counts as settled.
 const PATIENCE: usize = 4;
 
-/// … and the largest residual beside this, relative to the eigenvalue.
+/// Largest residual of an eigenvalue that counts as settled, relative to the eigenvalue.
 const LOOSE: f64 = 1e-3;
 
 /// Number of vectors between restarts; SLEPc tests convergence at restarts only. The largest eigenvalue is well

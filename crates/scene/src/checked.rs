@@ -81,16 +81,16 @@ pub struct Scene {
     pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
-    /// What of the input is left out, ignored or replaced: a sentence each.
+    /// Sentences on parts of the input that are left out, ignored or replaced.
     pub notes: Vec<String>,
-    /// What makes the answer doubtful: a sentence each.
+    /// Warnings, a sentence for each circumstance that makes the answer doubtful.
     pub warnings: Vec<String>,
-    /// What else users are told: boundary groups that no entry names, faces of joints without a partner, gaps that
+    /// Further remarks for users: boundary groups that no entry names, faces of joints without a partner, gaps that
     /// count as none.
     pub asides: Vec<String>,
     /// Whether load steps could renew its contacts.
     pub(crate) renewable: bool,
-    /// What load steps renew contacts from, if they do.
+    /// The data from which load steps renew contacts; `None` if they do not.
     pub(super) renewal: Option<Arc<Renewal>>,
     /// Whether more nodes of interfaces are tied than in contact.
     pub(super) mostly_tied: bool,

@@ -102,12 +102,12 @@ pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<Motion> {
 /// The meshes that are known so far.
 #[derive(Default)]
 pub(super) struct Cuts {
-    /// Those that have been cut, each with the number of subdomains that it was to have.
+    /// The meshes that have been cut, each with the number of subdomains that it was to have.
     cut: Vec<(usize, Outline, Arc<CellMesh>)>,
     /// Meshes that copies share, by where they are in memory: as they were, and what has become of them. The number is
     /// 0 for those that stay as they are.
     copies: HashMap<(usize, usize), (Arc<CellMesh>, Arc<CellMesh>)>,
-    /// What makes their cells doubtful: a sentence each.
+    /// Warnings, a sentence for each circumstance that makes cells of the meshes doubtful.
     pub warnings: Vec<String>,
     /// The last box that has got elements of second order.
     of_box: Option<(BoxMesh, Option<Map>, Arc<CellMesh>)>,

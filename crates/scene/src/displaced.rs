@@ -71,7 +71,7 @@ impl Displaced {
         Displaced::read(&gather_all(session.comm(), &words))
     }
 
-    /// Those of some bodies, which need not be the same on all ranks. Collective.
+    /// The displacements of the sides of some bodies, which need not be the same on all ranks. Collective.
     ///
     /// # Panics
     /// As [`gather`](Self::gather).

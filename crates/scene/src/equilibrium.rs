@@ -47,7 +47,7 @@ impl Wrench {
 pub struct Forces {
     /// Its loads.
     pub load: Wrench,
-    /// Those of the springs that it stands on.
+    /// The forces of the springs that the subdomain or body stands on.
     pub springs: Wrench,
     /// K u at given values, less loads and springs there: the reactions, if no row acts there.
     pub held: Wrench,

@@ -105,13 +105,13 @@ pub fn solved(session: &Session, scene: &Scene, name: &str) -> Result<()> {
     check(session, name, &of_scene(scene), Until::Solved, None)
 }
 
-/// What a solve of the scene takes on each rank, in bytes.
+/// The memory that a solve of the scene takes on each rank, in bytes.
 pub fn needed(session: &Session, scene: &Scene) -> f64 {
     of_scene(scene).solved(session.size())
 }
 
-/// What this rank may take: `-fetifeti_memory_limit`, or what the system says; `value` is that of the scene, if the
-/// user has set none.
+/// The memory that this rank may take: `-fetifeti_memory_limit`, or what the system says; `value` is that of the scene,
+/// if the user has set none.
 pub fn left(session: &Session, value: Option<&str>) -> Result<Option<Available>> {
     let options = Options::new(session, "");
     let on_machine = ranks_here(session);

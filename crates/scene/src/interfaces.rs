@@ -50,7 +50,7 @@ impl<'a> IntoIterator for &'a Interfaces {
 }
 
 impl Interfaces {
-    /// Those of the list, which are all, that `needs` selects by number.
+    /// The interfaces that `needs` selects by number, out of the list of all interfaces of a scene.
     pub(super) fn part(
         all: Vec<Interface>,
         needs: impl Fn(usize, &Interface) -> bool,
@@ -77,12 +77,12 @@ impl Interfaces {
         self.count == 0
     }
 
-    /// Those that are known, by increasing number.
+    /// The interfaces that are known, by increasing number.
     pub fn iter(&self) -> std::slice::Iter<'_, Interface> {
         self.known.iter()
     }
 
-    /// The same with their numbers.
+    /// The interfaces that are known, each with its number in the scene.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &Interface)> {
         let number = |at: usize| self.numbers.as_ref().map_or(at, |n| n[at] as usize);
         let known = self.known.iter().enumerate();

@@ -57,7 +57,7 @@ impl Scene {
         self.assemble_with(mesh, &Matrices::default())
     }
 
-    /// The same; its matrix may be known.
+    /// Subdomain `mesh.index` on its mesh; `matrices` may have its stiffness matrix already.
     fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &Matrices) -> Result<Subdomain> {
         let (body, inside) = self.place(mesh.index);
         let load = self.nodal_load(mesh, Factors::last(&self.steps))?;

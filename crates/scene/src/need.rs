@@ -51,7 +51,7 @@ pub(crate) struct Need {
     factors: Shared,
 }
 
-/// What subdomains that are alike share.
+/// The memory of matrices or factors that subdomains share if they are alike.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Shared {
     /// Bytes of one, how many differ, how many subdomains share them.
@@ -99,7 +99,7 @@ struct Counts {
 }
 
 impl Need {
-    /// What these bodies will take; `tied`: most of them are tied, and not in contact.
+    /// The memory that these bodies will take; `tied`: most of them are tied, and not in contact.
     pub fn of<'a>(
         bodies: impl ExactSizeIterator<Item = &'a BodySpec>,
         form: &Form,
@@ -235,8 +235,8 @@ impl Counts {
     }
 }
 
-/// What is the same in boxes whose subdomains have the same factors, up to multiples and turns, and in copies of one
-/// mesh; `None` where they all differ.
+/// A key that is equal for boxes whose subdomains have the same factors, up to multiples and turns, and for copies of
+/// one mesh; `None` where all subdomains differ.
 fn key(body: &BodySpec) -> Option<[u64; 13]> {
     let steady = |field: &Field| match field {
         Field::Expression(e) => !e.varies_in_space(),
@@ -264,7 +264,7 @@ fn key(body: &BodySpec) -> Option<[u64; 13]> {
     Some(out)
 }
 
-/// What is the same in bodies whose subdomains have the same matrices: coefficients and directions, too.
+/// A key that is equal for bodies whose subdomains have the same matrices: it has coefficients and directions, too.
 fn exact_key(body: &BodySpec) -> Option<[u64; 13]> {
     let number = |field: &Field| match field {
         Field::Expression(e) => e.as_constant().map(f64::to_bits),

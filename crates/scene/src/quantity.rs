@@ -20,7 +20,7 @@ pub(super) const LARGEST: f64 = 1e100;
 /// Largest edge, coordinate, gap and bound, and the inverse of the smallest edge: a volume is the third power.
 pub(super) const LONGEST: f64 = FARTHEST;
 
-/// What was expected instead of this gap or bound; `None` if it may be.
+/// The expectation that this gap or bound fails, for the message; `None` if the value is permitted.
 pub(super) fn unfit_length(value: f64) -> Option<String> {
     match value {
         v if !v.is_finite() => Some("a finite number was expected".into()),

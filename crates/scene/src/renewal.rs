@@ -31,7 +31,7 @@ use base::{Error, Result};
 use elements::form::Form;
 use fetifeti::substructures::{BodyNode, RowSource};
 
-/// What contacts are renewed from.
+/// The data from which contacts are renewed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Renewal {
     /// The scene without its bodies, before surfaces in it were replaced by bodies and sides.
@@ -42,14 +42,14 @@ pub(crate) struct Renewal {
     rows: Vec<MortarRow>,
     /// The sides of bodies that touched to begin with, and which of them carries multipliers.
     touching: Vec<([usize; 2], [usize; 2], usize)>,
-    /// What `adjust` did to begin with: the way from a node that carries a multiplier, by the other body and the node,
-    /// to the place at which it would touch; and the same beside obstacles.
+    /// The adjustments that `adjust` made to begin with: the way from a node that carries a multiplier, by the other
+    /// body and the node, to the place at which it would touch; and, in `beside`, the same beside obstacles.
     adjusted: HashMap<(usize, BodyNode), [f64; 3]>,
     beside: Adjusted,
 }
 
 impl Renewal {
-    /// What the contacts of a scene are renewed from; `spec` has bodies and sides in place of surfaces.
+    /// The data from which the contacts of a scene are renewed; `spec` has bodies and sides in place of surfaces.
     ///
     /// # Errors
     /// [`Error::Input`] for contacts that cannot be renewed.

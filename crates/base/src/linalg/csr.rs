@@ -160,7 +160,7 @@ impl Csr {
         out
     }
 
-    /// The same matrix without entries that are zero.
+    /// This matrix without entries that are zero.
     pub fn without_zeros(self) -> Csr {
         let mut out = Csr {
             row_ptr: vec![0],

@@ -42,7 +42,7 @@ impl Semidefinite {
         Semidefinite::above(a, DEPENDENT)
     }
 
-    /// The same; drops columns whose pivots are below `dependent` relative to their diagonal entries.
+    /// Factors `a`, and drops columns whose pivots are below `dependent` relative to their diagonal entries.
     pub fn above(a: &Dense, dependent: f64) -> Semidefinite {
         let n = a.rows;
         let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);

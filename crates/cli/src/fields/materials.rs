@@ -21,7 +21,7 @@ pub(super) struct Materials(BTreeMap<usize, BTreeSet<Key>>);
 pub(super) struct OfBody(Vec<Key>);
 
 impl Materials {
-    /// Those of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
+    /// The materials of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
     pub fn new(session: &Session, scene: &Scene, parts: &[SteppedMesh], place: Place) -> Materials {
         // Scalar fields have no stress.
         if scene.form.is_elastic() {
@@ -31,7 +31,7 @@ impl Materials {
         }
     }
 
-    /// The same, in scalar problems, too. Collective.
+    /// The materials of subdomains as [`new`](Self::new) finds them, in scalar problems, too. Collective.
     pub fn told_apart(session: &Session, parts: &[SteppedMesh], place: Place) -> Materials {
         let mut all = Materials(BTreeMap::new());
         for mesh in parts.iter().map(SteppedMesh::mesh) {
@@ -64,7 +64,7 @@ impl Materials {
         }
     }
 
-    /// Those of a body.
+    /// The materials of a body.
     pub fn of(&self, body: usize) -> OfBody {
         let keys = self.0.get(&body).filter(|keys| keys.len() <= MOST);
         OfBody(keys.into_iter().flatten().copied().collect())

@@ -26,10 +26,10 @@ use scene::{Scene, SteppedMesh};
 /// Where fields come together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Place {
-    /// Those of the whole scene on rank 0.
+    /// The fields of the whole scene come together on rank 0.
     #[default]
     FirstRank,
-    /// Those of its subdomains on every rank.
+    /// The fields of a rank's subdomains come together on this rank.
     EachRank,
 }
 

@@ -39,7 +39,7 @@ pub(super) struct Flat<'a> {
     names: Names<'a>,
     /// By instance what is added to its numbers, and its largest numbers then.
     pub(super) numbers: Vec<[Offsets; 2]>,
-    /// What is added to the numbers of the assembly's own nodes and elements.
+    /// The offsets that are added to the numbers of the assembly's own nodes and elements.
     own: Offsets,
     text: String,
     pub(super) lines: Vec<Line>,
@@ -126,7 +126,7 @@ impl<'a> Flat<'a> {
         Ok(())
     }
 
-    /// What was written: lines, the text of new ones, cards, and notes.
+    /// The deck as it was written: lines, the text of new ones, cards, and notes.
     pub fn end(self) -> (Flattened, Vec<Note>) {
         let flat = Flattened {
             lines: self.lines,

@@ -33,7 +33,7 @@ const STRUCTURE: [&str; 7] = [
     "SYSTEM",
 ];
 
-/// The same deck without parts, and what is to be said of it. A deck without such keywords stays as it is.
+/// The deck without parts, and notes on its parts and instances. A deck without keywords of parts stays as it is.
 ///
 /// # Errors
 /// Parts, instances and assemblies that do not end or begin where they must, and names that nothing has.

@@ -1,4 +1,4 @@
-//! What stands where in a deck of parts: which cards are a part's, an instance's, the assembly's, and the deck's own.
+//! The outline of a deck of parts: which cards are a part's, an instance's, the assembly's, and the deck's own.
 
 use std::collections::HashSet;
 
@@ -36,7 +36,7 @@ pub(super) struct Outline<'a> {
     pub others: Vec<&'a Card>,
 }
 
-/// What is open at a card.
+/// The block that is open at a card.
 #[derive(Clone, Copy, PartialEq)]
 enum Open {
     Part,

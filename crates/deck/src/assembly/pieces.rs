@@ -1,4 +1,4 @@
-//! What cards of parts are made of: sets, elements over several lines, numbers, points.
+//! Pieces of the cards of parts: sets, elements over several lines, numbers, points.
 
 use super::outline::{value, Instance, Outline};
 use super::placement::Placement;
@@ -60,7 +60,7 @@ pub(super) fn largest<'c>(cards: &Cards, list: impl Iterator<Item = &'c Card>) -
 pub(super) struct Elements {
     /// The nodes of one; 1 where the kind is not known, so that every line begins one.
     nodes: usize,
-    /// Those that are still to come.
+    /// The nodes of the present element that are still to come.
     left: usize,
 }
 

@@ -12,7 +12,7 @@ pub(super) struct Placement {
 /// No turn.
 const EYE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// What of the length of a vector counts as nothing.
+/// The part of the length of a vector that counts as zero.
 const NOTHING: f64 = 1e-10;
 
 impl Placement {
@@ -86,7 +86,7 @@ impl Placement {
         [0, 1, 2].map(|d| turned[d] + self.way[d])
     }
 
-    /// What a direction becomes.
+    /// The direction `v` after the turn.
     pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
         if self.turn == EYE {
             v

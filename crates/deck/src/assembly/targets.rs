@@ -1,4 +1,4 @@
-//! What fields of data lines and parameters mean, where they stand in an instance or in the assembly.
+//! The meaning of fields of data lines and parameters that stand in an instance or in the assembly.
 
 use std::collections::HashMap;
 
@@ -22,7 +22,7 @@ impl Offsets {
     }
 }
 
-/// What names and numbers mean in the whole deck.
+/// The meaning of names and numbers in the whole deck.
 #[derive(Default)]
 pub(super) struct Names<'a> {
     /// The numbers that are added, by instance.
@@ -57,7 +57,8 @@ impl Scope<'_> {
         }
     }
 
-    /// What a field names, a number or a set: in an instance its own, and elsewhere those of instances by their names.
+    /// The target that a field names, a number or a set: in an instance its own, and elsewhere those of instances by
+    /// their names.
     pub fn target(&self, names: &Names<'_>, text: &str, of: Of) -> String {
         if text.is_empty() {
             return String::new();

@@ -1,4 +1,4 @@
-//! What is read so far, and what every part of the reader needs.
+//! The deck as far as it is read, and the functions that every part of the reader needs.
 
 use super::held::{Amplitude, State};
 use super::ids::Ids;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 /// few lines what no memory holds.
 const ENTRIES: usize = 5_000_000;
 
-/// What is read so far.
+/// The reader of a deck, with all that is read so far.
 pub(crate) struct Reader<'a> {
     pub(super) cards: &'a Cards,
     pub(super) files: &'a Files,

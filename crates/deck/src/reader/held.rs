@@ -1,4 +1,4 @@
-//! What holds until it is replaced: supports, loads, requests; and the amplitudes of loads.
+//! Definitions that hold until they are replaced: supports, loads, requests; and the amplitudes of loads.
 
 use crate::place::Place;
 use crate::step::{BodyLoadKind, FieldRequest, NodePrint};
@@ -63,7 +63,7 @@ pub(super) struct Seen {
     pub cell_fields: bool,
 }
 
-/// What holds at present.
+/// The definitions that hold at present.
 #[derive(Debug, Default)]
 pub(super) struct State {
     /// How many steps have begun.

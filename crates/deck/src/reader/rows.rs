@@ -10,7 +10,7 @@ use crate::place::Place;
 use base::linalg::vec3::{cross, dot, minus, norm};
 use base::Result;
 
-/// What of the length of a vector counts as nothing.
+/// The part of the length of a vector that counts as zero.
 const NOTHING: f64 = 1e-10;
 
 impl<'a> Reader<'a> {

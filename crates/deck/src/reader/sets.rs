@@ -268,7 +268,7 @@ fn listed(
     Ok(found)
 }
 
-/// What field `k` names by number or as a set.
+/// The nodes or elements that field `k` names by number or as a set.
 fn target(
     files: &Files,
     ids: &Ids,

@@ -28,7 +28,7 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
     });
 }
 
-/// The same for a dimension that is known at run time.
+/// Calls `f` with every quadrature point of a cell whose dimension is known at run time.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, or there are not 2^`dim` points.

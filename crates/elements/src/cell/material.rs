@@ -32,7 +32,7 @@ pub enum Cure {
     BBar,
 }
 
-/// What a cell is made of.
+/// The material of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Material {
     /// −∇·(ρ∇u) = f, one unknown per node.

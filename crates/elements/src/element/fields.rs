@@ -51,7 +51,7 @@ pub fn recovered_squares(
     )
 }
 
-/// The same where the stress is constant: `own` stands for all points.
+/// The two integrals of [`recovered_squares`] for a constant stress: `own` stands for all points.
 pub fn recovered_squares_of(
     kind: CellKind,
     dim: usize,

@@ -2,7 +2,7 @@
 
 use crate::kind::CellKind;
 
-/// What is integrated, which determines the order.
+/// The purpose of an integration, which determines the order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
     /// Stiffness: exact on affine cells.

@@ -1,8 +1,8 @@
 //! Whether the map of a cell can be inverted.
 //!
-//! What counts are the points at which the stiffness is integrated, as in CalculiX and Abaqus: a cell is refused where
-//! det J is not positive at one of them. Elsewhere, as at a corner that a bent edge folds over, it makes the cell
-//! doubtful and no more.
+//! The points at which the stiffness is integrated decide, as in CalculiX and Abaqus: a cell is refused where det J is
+//! not positive at one of them. Elsewhere, as at a corner that a bent edge folds over, it makes the cell doubtful and
+//! no more.
 
 use super::integration::Integration;
 use super::loads::{check_dim, volume};
@@ -13,7 +13,7 @@ use crate::kind::CellKind;
 use base::linalg::small::invert;
 use std::fmt;
 
-/// What is wrong with a cell.
+/// The defect of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BadCell {
     /// A coordinate is infinite or not a number.
@@ -49,7 +49,7 @@ pub struct Doubt {
     pub jacobian: f64,
 }
 
-/// What of the product of its columns' lengths det J has to exceed: far below it are only the roundings.
+/// The part of the product of its columns' lengths that det J has to exceed: far below it are only the roundings.
 const ZERO: f64 = 1e-12;
 
 /// How far a middle node may lie from the middle of its edge, in lengths of the edge, for a cell to count as straight.

@@ -117,7 +117,7 @@ impl Side {
         &self.faces
     }
 
-    /// The same side with normals to the other side.
+    /// This side with its normals reversed.
     pub fn reversed(&self) -> Side {
         let turned = |face: &Face| Face {
             kind: face.kind,
@@ -127,7 +127,7 @@ impl Side {
         Side::new(self.dim, self.points.clone(), faces)
     }
 
-    /// The same side at another place, `way` from here.
+    /// This side at another place, `way` from here.
     pub fn moved(&self, way: [f64; 3]) -> Side {
         let points = self.points.iter().map(|x| [0, 1, 2].map(|d| x[d] + way[d]));
         Side::new(self.dim, points.collect(), self.faces.clone())

@@ -150,7 +150,7 @@ pub enum Cut {
     Wedges,
     /// Six pyramids around the middle.
     Pyramids,
-    /// The same, but two tetrahedra on the side at x = 1.
+    /// Pyramids around the middle, but two tetrahedra on the side at x = 1.
     PyramidsAndTetrahedra,
 }
 
@@ -201,7 +201,7 @@ impl Mesh {
         mesh
     }
 
-    /// The same, but `map` moves all nodes: cells are curved.
+    /// A grid of n cells per direction, each cut as `cut` says. `map` moves all nodes: cells are curved.
     pub fn curved(
         dim: usize,
         n: usize,

@@ -176,7 +176,7 @@ fn messages_are_clauses() {
     }
 }
 
-/// What counts are the points of the cell's own rule: one in the middle, four or eight, nine or 27.
+/// The points of the cell's own rule decide: one in the middle, four or eight, nine or 27.
 #[test]
 fn fewer_points_refuse_less() {
     // A corner that is pulled far into the cell: the points near it fold first.

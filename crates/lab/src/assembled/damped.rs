@@ -1,5 +1,5 @@
-//! What the loop falls back on where its sets wander: the proximal method of multipliers (Rockafellar 1976) with damped
-//! Newton steps.
+//! The method that the loop falls back on where its sets wander: the proximal method of multipliers (Rockafellar 1976)
+//! with damped Newton steps.
 //!
 //! ```text
 //!     ψ(u) = ½ uᵀK u − fᵀu + ½ Σ_j (s_j)₊² / κ_j + ½ (u − z)ᵀ D (u − z),      s_j = μ_j + κ_j (B u − c)_j
@@ -33,10 +33,10 @@ use base::Result;
 use parallel::meter::timed;
 use petsc::{Session, Vec as PetscVec};
 
-/// κ in the first round, relative to the stiffness of the nodes of a row, …
+/// κ in the first round, relative to the stiffness of the nodes of a row.
 const STIFFNESS: f64 = 30.0;
 
-/// … its factor from one round to the next, and the largest: H loses digits to stiffer springs.
+/// The factor of κ from one round to the next, and the largest κ: H loses digits to stiffer springs.
 const STIFFER: f64 = 3.0;
 const STIFFEST: f64 = 1e7;
 

@@ -107,7 +107,7 @@ impl Groups {
 pub enum Signs {
     /// The shortest.
     Any,
-    /// Those that do not pull, where there are such.
+    /// Multipliers that do not pull, where there are such.
     Pushing,
 }
 

@@ -1,4 +1,4 @@
-//! What a solution on one active set says about the rows: which are wrong, and which set follows.
+//! The verdict of a solution on its active set: which rows are wrong, and which set follows.
 
 use super::outer::Certificate;
 use super::refine::over;

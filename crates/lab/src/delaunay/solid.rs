@@ -61,7 +61,7 @@ impl Solid {
         }
     }
 
-    /// The same cells with nodes in the middles of their edges.
+    /// These cells with nodes in the middles of their edges.
     pub fn quadratic(mut self) -> Solid {
         let mut middles = HashMap::new();
         for cell in &mut self.cells {

@@ -25,7 +25,7 @@ const HEX27: &[u8] = &[
     26,
 ];
 
-/// What an element of Gmsh's type is to us; `None` where we have no such cells.
+/// The kind of cell for an element of Gmsh's type, and the order of its nodes; `None` where we have no such cells.
 pub fn known(kind: i64) -> Option<(CellKind, Order)> {
     Some(match kind {
         1 => (CellKind::Line2, None),

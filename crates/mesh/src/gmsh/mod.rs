@@ -59,7 +59,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile> {
     parts.finish(&scan, name)
 }
 
-/// What was read so far.
+/// The sections that were read so far.
 #[derive(Default)]
 struct Parts {
     names: Names,

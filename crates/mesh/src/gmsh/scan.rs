@@ -314,7 +314,7 @@ fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// What was found, in a form that can be printed: its beginning, in quotes.
+/// The bytes that were found, in a form that can be printed: their beginning, in quotes.
 pub(super) fn quoted(found: &[u8]) -> String {
     const MOST: usize = 40;
     let text = String::from_utf8_lossy(&found[..found.len().min(4 * MOST)]);

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 const INT: Width = Width::Four;
 
-/// What differs between 4.0 and 4.1.
+/// The differences between the formats 4.0 and 4.1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     /// 4.0: the number of an entity comes before its dimension, and that of a node before its point.
@@ -120,7 +120,7 @@ fn list(scan: &mut Scan, layout: Layout, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// What stands before the blocks of $Nodes and $Elements.
+/// The head of $Nodes or $Elements, which stands before the blocks.
 struct Head {
     blocks: usize,
     count: usize,
@@ -151,7 +151,7 @@ impl Head {
     }
 }
 
-/// What stands before a block: the entity, whether nodes are parametric or the type of elements, and their number.
+/// The head of a block: the entity, whether nodes are parametric or the type of elements, and their number.
 struct Block {
     at: usize,
     dim: i64,

@@ -3,7 +3,7 @@
 use crate::cells::Cells;
 use base::linalg::union_find::UnionFind;
 
-/// What stands for "no cell" in [`Adjacency`].
+/// The number that stands for "no cell" in [`Adjacency`].
 const NONE: u32 = u32::MAX;
 
 /// The cell behind every side of every cell.

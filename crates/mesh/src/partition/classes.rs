@@ -11,7 +11,7 @@ use super::sharing::Sharing;
 use crate::cells::Cells;
 use base::linalg::union_find::UnionFind;
 
-/// What a shared node belongs to.
+/// The kind of class that a shared node belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Always a vertex: the plane.
@@ -96,7 +96,7 @@ impl<'a> Classes<'a> {
         found
     }
 
-    /// What a node belongs to; `None` for a node of one subdomain.
+    /// The kind of class that a node belongs to; `None` for a node of one subdomain.
     pub fn kind(&self, node: u32) -> Option<Kind> {
         let class = self.class[node as usize];
         (class != NONE).then(|| self.kinds[class as usize])

@@ -6,7 +6,7 @@ use super::sharing::Sharing;
 use super::vertices;
 use crate::cells::Cells;
 
-/// What the subdomains of a body share. Every shared node is in one vertex, one edge or one face.
+/// The nodes that the subdomains of a body share. Every shared node is in one vertex, one edge or one face.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Interface {
     /// Nodes at which continuity is primal, increasing: there subdomains hold each other. All subdomains that have such

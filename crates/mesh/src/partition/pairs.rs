@@ -26,7 +26,7 @@ pub(super) struct Parts<'a> {
     pub least: i64,
 }
 
-/// What a search knows of a vertex; valid if `search` is that of the present search.
+/// The state of a vertex in a search; valid if `search` is that of the present search.
 #[derive(Clone, Copy, Default)]
 struct Seen {
     search: u32,

@@ -1,4 +1,4 @@
-//! What a graph partitioner leaves to do: every part in one piece, none empty or too small, and smooth rims.
+//! Improvements to the parts of a graph partitioner: every part in one piece, none empty or too small, and smooth rims.
 //!
 //! From the second step on, a cell moves only to a part that it shares a side with, and only if the part that it leaves
 //! stays connected: one piece stays one piece.

@@ -26,7 +26,7 @@ $Elements
 $EndElements
 ";
 
-/// The same; the triangles are in two groups.
+/// A square of two triangles, which are in two groups, and one of its sides.
 pub(super) const FOUR: &str = "$MeshFormat
 4.1 0 8
 $EndMeshFormat
@@ -105,7 +105,7 @@ fn the_originals_are_read() {
     assert_eq!(of(&mesh, 2), ("6".into(), cells(2, &[1, 2])));
 }
 
-/// What is replaced in [`TWO`] by what, and the beginning of the sentence for it.
+/// Replacements in [`TWO`], and the beginning of the sentence for each.
 const WRONG_TWO: &str = r##"
 2.2 0 8 => 3.0 0 8
     line 2: found the format "3.0" where 2.0, 2.1, 2.2, 4.0 or 4.1 was expected

@@ -35,7 +35,7 @@ fn name(file: &Path) -> String {
         .into_owned()
 }
 
-/// What is in a mesh, as its `.txt` says.
+/// The contents of a mesh, as its `.txt` says.
 struct Described {
     points: Vec<[f64; 3]>,
     /// VTK's number of the kind, and the nodes.

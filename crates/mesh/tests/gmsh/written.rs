@@ -1,5 +1,5 @@
-//! What we write is what we read: tests of `crates/mesh/src/gmsh/write.rs`. The meshes are files of Gmsh, so that the
-//! order of nodes is Gmsh's.
+//! Files that we write are read as they were: tests of `crates/mesh/src/gmsh/write.rs`. The meshes are files of Gmsh,
+//! so that the order of nodes is Gmsh's.
 
 use super::*;
 

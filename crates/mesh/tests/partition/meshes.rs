@@ -164,7 +164,7 @@ pub fn mixed(n: [usize; 3]) -> Mesh {
     Mesh { cells, points }
 }
 
-/// The same mesh with the middles of edges, of triangles, tetrahedra and bricks.
+/// A mesh of second order: `mesh` with the middles of edges, of triangles, tetrahedra and bricks.
 pub fn second_order(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points.clone();
     let mut middles: HashMap<[u32; 2], u32> = HashMap::new();

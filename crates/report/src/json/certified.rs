@@ -16,7 +16,7 @@ pub struct Certified {
     pub relative: Option<f64>,
     /// ‖u‖_K of the unknowns.
     pub size: Option<f64>,
-    /// What rounding may add; part of `most`.
+    /// The part of `most` that rounding may add.
     pub rounding: Option<f64>,
     /// Krylov iterations that the bounds took.
     pub iterations: usize,
@@ -52,7 +52,7 @@ pub struct BodyError {
     /// Estimate of its error in the energy norm.
     #[serde(with = "number")]
     pub error: f64,
-    /// The same relative to its energy norm; `null` where it has no energy.
+    /// Estimate of its error relative to its energy norm; `null` where it has no energy.
     pub relative: Option<f64>,
 }
 

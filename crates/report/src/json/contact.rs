@@ -221,8 +221,8 @@ pub struct BodyBalance {
     /// Resultant of the reactions at prescribed displacements, as the elements have them, less what the iteration
     /// leaves (`imbalance`) where that is within the tolerance; `null` for a body without any.
     pub reaction: Option<Amount>,
-    /// What the forces leave, relative to the largest sum of the sizes of loads, springs, contacts or reactions; of
-    /// rings along the axis.
+    /// The resultant of all forces, relative to the largest sum of the sizes of loads, springs, contacts or reactions;
+    /// of rings along the axis.
     #[serde(with = "number")]
     pub imbalance: f64,
     /// In elasticity, for bodies without prescribed displacements: imbalance of the moments about the body's centre,

@@ -21,12 +21,12 @@ pub struct PlanReport {
     pub ranks: usize,
     /// PETSc options that were set, on the command line, in a file, in the environment or in the scene.
     pub options: BTreeMap<String, String>,
-    /// What of the input is left out, ignored or replaced.
+    /// Sentences on parts of the input that are left out, ignored or replaced.
     pub notes: Vec<String>,
     /// Motions that no row holds: a load on one has no answer, and without it the place along it is arbitrary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_motions: Vec<FreeMotion>,
-    /// What makes the answer doubtful: a sentence each.
+    /// Warnings, a sentence for each circumstance that makes the answer doubtful.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The bodies.
@@ -51,11 +51,11 @@ pub struct PlanReport {
     pub load_steps: Option<usize>,
     /// Different subdomains: each has one factorisation.
     pub kinds: usize,
-    /// Those of them whose operators are sparse solves.
+    /// Different subdomains whose operators are sparse solves.
     pub sparse: usize,
     /// The preconditioner that is used if the user chooses none.
     pub preconditioner: String,
-    /// What a solve takes.
+    /// The memory that a solve takes.
     pub memory: PlannedMemory,
 }
 
@@ -88,9 +88,9 @@ pub struct PlannedInterface {
     pub bodies: [String; 2],
     /// Common nodes.
     pub nodes: usize,
-    /// Those that are tied.
+    /// Common nodes that are tied.
     pub tied: usize,
-    /// Those that are in contact.
+    /// Common nodes that are in contact.
     pub contact: usize,
 }
 
@@ -103,6 +103,6 @@ pub struct PlannedMemory {
     pub dense_mb: f64,
     /// The whole of a solve, estimated, on each rank.
     pub solve_mb: f64,
-    /// What is left for each rank; `null` where the system does not say.
+    /// The memory that is left for each rank; `null` where the system does not say.
     pub available_mb: Option<f64>,
 }

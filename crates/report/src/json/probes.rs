@@ -18,8 +18,8 @@ pub struct ProbeValue {
     pub stress: Vec<f64>,
 }
 
-/// What a `*NODE PRINT` of a deck asks for. Vectors are in the system of the node where the deck gives it one
-/// (`*TRANSFORM`), unless it asks for the global one.
+/// The values that a `*NODE PRINT` of a deck asks for. Vectors are in the system of the node where the deck gives it
+/// one (`*TRANSFORM`), unless it asks for the global one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct NodePrint {
     /// The node set.

@@ -86,13 +86,13 @@ pub struct SolveReport {
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
-    /// What of the input is left out, ignored or replaced.
+    /// Sentences on parts of the input that are left out, ignored or replaced.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
     /// Motions that nothing holds and no load drives: the place along them is arbitrary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub free_motions: Vec<FreeMotion>,
-    /// What makes the answer doubtful: a sentence each, on standard error, too.
+    /// Warnings, a sentence for each circumstance that makes the answer doubtful; on standard error, too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The values at the scene's probes.
@@ -291,6 +291,6 @@ mod tests;
 pub struct FreeMotion {
     /// The bodies that move.
     pub bodies: Vec<String>,
-    /// What they do, such as "slides along x".
+    /// The motion in words, such as "slides along x".
     pub motion: String,
 }

@@ -44,14 +44,14 @@ impl ContactFields {
         }
     }
 
-    /// The same with pressures, also where no candidate is added: the pieces of a grid have the same arrays.
+    /// These fields with pressures, also where no candidate is added: the pieces of a grid have the same arrays.
     #[must_use]
     pub fn with_areas(mut self) -> Self {
         self.begin_areas();
         self
     }
 
-    /// The same with smoothed pressures beside them.
+    /// These fields with smoothed pressures beside the pressures.
     #[must_use]
     pub fn with_smoothed(mut self) -> Self {
         self.smoothed = Some(vec![0.0; self.multiplier.len()]);

@@ -11,7 +11,7 @@ use base::linalg::vec3::{minus, norm, unit};
 /// A face by its corners: a segment in the plane, its normal to the right of the way, or a polygon in space.
 pub type Polygon = Vec<[f64; 3]>;
 
-/// What stands beside the bodies.
+/// The rigid surfaces beside the bodies.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Beside<'a> {
     /// Planes, cylinders and spheres.

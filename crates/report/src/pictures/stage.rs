@@ -55,7 +55,7 @@ impl<'a> Stage<'a> {
         stage
     }
 
-    /// The same with obstacles.
+    /// This stage with the obstacles and rigid surfaces in `beside`.
     pub fn beside(mut self, beside: &Beside) -> Self {
         let bodies = bounds(self.solid.shown.iter().copied());
         let all = beside.obstacles.iter().flat_map(|o| o.triangles(bodies));

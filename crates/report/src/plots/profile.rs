@@ -14,8 +14,8 @@ const SHOWN: usize = 12;
 const MARKED: usize = 40;
 /// A gap below this part of the interface's length is rounding.
 const CLOSED: f64 = 1e-11;
-/// The same bound for displacements in space: their scale is not that of the interface, and iterations end at a
-/// tolerance.
+/// A gap of displacements in space below this part of the interface's length counts as closed: their scale is not that
+/// of the interface, and iterations end at a tolerance.
 const CLOSED_IN_SPACE: f64 = 1e-6;
 /// Background of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);

@@ -19,7 +19,7 @@ pub fn internal_force(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<f64> {
     force
 }
 
-/// What holds a subdomain at given values.
+/// The forces that hold a subdomain at given values.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Held {
     /// (degree of freedom of the mesh, row of K times u without springs).

@@ -359,8 +359,8 @@ fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) 
     Ok(())
 }
 
-/// What `value` along an axis of a node's system is along the coordinates: body, degree of freedom, value; `None` for a
-/// node that no element has.
+/// The parts along the coordinates of a `value` along an axis of a node's system: body, degree of freedom, value;
+/// `None` for a node that no element has.
 pub(super) fn along_coordinates(
     deck: &Deck,
     numbers: &Numbers,

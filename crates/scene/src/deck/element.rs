@@ -8,7 +8,7 @@ use elements::kind::CellKind;
 /// How the stiffness of an element of a deck is integrated, and what a plane one models; [`Integration`] lists where
 /// that differs from CalculiX, [`check`](elements::element::check) says whether there is such an element.
 ///
-/// What decks call full is not always: CalculiX integrates its wedges with fewer points.
+/// Full integration in the sense of decks is not always full: CalculiX integrates its wedges with fewer points.
 pub fn deck_element(element: ElementType) -> (Integration, Option<Plane>) {
     let integration = match (element.integration(), element.kind()) {
         (deck::Integration::Full, CellKind::Wedge6 | CellKind::Wedge15) => Integration::Reduced,

@@ -1,4 +1,4 @@
-//! What joins the bodies of a deck: *TIE, *CONTACT PAIR, *EQUATION.
+//! Joints between the bodies of a deck: *TIE, *CONTACT PAIR, *EQUATION.
 
 use super::bodies::along_coordinates;
 use super::numbers::Numbers;

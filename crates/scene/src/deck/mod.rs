@@ -25,7 +25,7 @@ use fetifeti::substructures::BodyNode;
 use mesh::bytes;
 use numbers::Numbers;
 
-/// What CalculiX prints of a force on a ring: that on one of the sectors of 2° of which it makes the ring.
+/// The part of a force on a ring that CalculiX prints: that on one of the sectors of 2° of which it makes the ring.
 const SECTOR: f64 = 1.0 / 180.0;
 
 /// A deck that has been read.
@@ -90,7 +90,7 @@ impl DeckScenes {
         })
     }
 
-    /// The same deck, with all elements integrated in full if `in_full` is set: C3D8R as C3D8, C3D6 with six points.
+    /// This deck with all elements integrated in full if `in_full` is set: C3D8R as C3D8, C3D6 with six points.
     #[must_use]
     pub fn integrated(mut self, in_full: bool) -> DeckScenes {
         self.in_full = in_full;
@@ -102,8 +102,8 @@ impl DeckScenes {
         &self.deck
     }
 
-    /// What of the deck is ignored, solved as something else or left out, where its mesh is torn, and which surfaces
-    /// have exchanged their roles: a sentence each.
+    /// Notes on the deck, a sentence each: what is ignored, solved as something else or left out, where its mesh is
+    /// torn, and which surfaces have exchanged their roles.
     pub fn notes(&self) -> Vec<String> {
         let deck = &self.deck;
         let line = |what: &str, note: &deck::Note| {

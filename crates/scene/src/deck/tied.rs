@@ -58,7 +58,7 @@ pub(super) fn adjust(deck: &mut Deck) -> Vec<String> {
     out
 }
 
-/// What *TIE and tied contact have in common.
+/// The data that *TIE and tied contact have in common.
 struct Joint<'d> {
     /// The slave and the master.
     names: [&'d SurfaceName; 2],

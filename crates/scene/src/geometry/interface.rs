@@ -76,7 +76,8 @@ pub struct Interface {
     pub entry: Option<usize>,
     /// The distance of the two nodes along the normal; zero where they coincide.
     pub distances: Vec<f64>,
-    /// What `adjust` adds to the distances at nodes of `shared` that count as touching, with the nodes' numbers there.
+    /// The lengths that `adjust` adds to the distances at nodes of `shared` that count as touching, by the nodes'
+    /// numbers there.
     pub adjusted: BTreeMap<usize, f64>,
     /// The gaps at the nodes in contact.
     pub limits: Limits,

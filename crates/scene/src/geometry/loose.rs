@@ -20,7 +20,7 @@ use mesh::Mesh;
 /// takes for contact where nothing is said.
 const NEAR: f64 = 0.1;
 
-/// What touches over less than this fraction of the smallest face is an edge or a corner.
+/// Surfaces that touch over less than this fraction of the smallest face touch at an edge or a corner.
 const SMALL: f64 = 1e-3;
 
 /// Pairs that have a sentence of their own.

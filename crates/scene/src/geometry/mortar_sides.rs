@@ -7,7 +7,7 @@ use crate::model::body::BodySpec;
 use elements::form::Form;
 use elements::mortar::{self, Row, Sample, Side};
 
-/// What joins two sides whose nodes do not match.
+/// The coupling of two sides whose nodes do not match.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mortar {
     /// Which of the two bodies of the interface carries the multipliers, 0 or 1.
@@ -44,7 +44,7 @@ impl Surfaces {
         }
     }
 
-    /// The same for two sides of one body.
+    /// These surfaces as two sides of one body, which may have nodes in common.
     pub fn of_one_body(mut self) -> Surfaces {
         let own: HashSet<usize> = self.nodes[0].iter().copied().collect();
         let both = self.nodes[1].iter().copied();

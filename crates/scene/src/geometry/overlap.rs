@@ -98,7 +98,7 @@ pub(crate) fn too_large(bodies: &[Body], interface: &Interface) -> Option<String
     sentence(names(bodies, interface), -distance, &bodies[thin], *normal)
 }
 
-/// The same for a side and what it overlaps, by `overlap`, with the body that is the thinner one.
+/// The end of a sentence if a side overlaps something by too much: `overlap` is the length, `thin` the thinner body.
 pub(crate) fn sentence(
     names: [String; 2],
     overlap: f64,

@@ -53,7 +53,7 @@ impl BodySpec {
             .chain(of_cells.into_iter().flatten())
     }
 
-    /// Those of them that have a node among some.
+    /// The faces of elements on a side that have a node among `nodes`.
     pub fn faces_around(&self, side: usize, nodes: impl Fn(usize) -> bool) -> Vec<Face> {
         let mine = |face: &Face| face.nodes.iter().any(|&n| nodes(n));
         match &self.mesh {

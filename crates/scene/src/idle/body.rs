@@ -27,11 +27,11 @@ pub(crate) struct BodySlack {
     pub body: usize,
     /// A basis of those that nothing sees, and the degree of freedom of each at which the others vanish and it is one.
     dual: Vec<(u32, Motion)>,
-    /// The same space, orthonormal.
+    /// An orthonormal basis of the motions that nothing sees.
     pub idle: Vec<Motion>,
-    /// Those that rows see beside rigid motions; zero where the springs are.
+    /// The motions that rows see beside rigid motions; zero where the springs are.
     pub seen: Vec<Motion>,
-    /// What is said of each idle motion that a load drives.
+    /// The words on each idle motion, for the message where a load drives it.
     what: Vec<Arc<str>>,
     /// The largest strain that cells see of the motions.
     strain: f64,
@@ -192,7 +192,7 @@ impl BodySlack {
         Arc::new(k)
     }
 
-    /// What may be the kernel of K with its springs, from the rigid motions.
+    /// Candidates for the kernel of K with its springs, made from the rigid motions.
     pub fn near_kernel(&self, rigid: Vec<Vec<f64>>, body: &Body, dofs: &[u64]) -> Vec<Vec<f64>> {
         let mut out = rigid;
         let place = |dof: u32| dofs.binary_search(&(body.first_dof + u64::from(dof))).ok();

@@ -1,4 +1,4 @@
-//! What is said of motions without energy.
+//! Messages on motions without energy.
 
 use super::basis::at;
 use super::body::BodySlack;
@@ -8,12 +8,12 @@ use elements::element::may_slack;
 use elements::kind::CellKind;
 use mesh::Mesh;
 
-/// What helps.
+/// The remedy that messages name.
 pub(super) const REMEDY: &str =
     "full integration has none (-fetifeti_full_integration for decks, `integration = \"full\"` in scenes)";
 
 impl BodySlack {
-    /// What the user is told.
+    /// The note to the user on the motions without energy of this body.
     pub(super) fn note(&self, body: &Body) -> String {
         let (n, all) = (self.idle.len(), self.idle.len() + self.seen.len());
         let any = self.idle.iter().chain(&self.seen).next().expect("a motion");

@@ -100,7 +100,7 @@ pub fn held() -> [Option<Field>; 3] {
 /// The subdomains of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cut {
-    /// Those that the mesh has.
+    /// The subdomains that the mesh has already.
     AsItIs,
     /// As many as the cost model finds best, made by the partitioner.
     Auto,
@@ -130,7 +130,7 @@ pub struct BodySpec {
     kind: Arc<BodyKind>,
 }
 
-/// What copies of a body have in common, apart from their mesh: many copies take the memory of one.
+/// The properties that copies of a body have in common, apart from their mesh: many copies take the memory of one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyKind {
     /// The order of the elements of a box, 1 or 2; meshes of cells have their own.

@@ -147,7 +147,7 @@ impl Field {
         }
     }
 
-    /// The same field for a grid of bodies: cells cover the whole grid.
+    /// This field over a grid of bodies: its cells cover the whole grid.
     pub(crate) fn over(&self, bodies: [usize; 3]) -> Field {
         match self {
             Field::Cells(cells) => Field::Cells(cells.over(bodies)),

@@ -1,4 +1,4 @@
-//! What joins bodies, or holds them from outside, as plain data: ties, contacts, obstacles, equations.
+//! Joints between bodies and restraints from outside, as plain data: ties, contacts, obstacles, equations.
 
 use super::profile::Profile;
 use super::ramp::Ramp;
@@ -101,7 +101,7 @@ pub struct ObstacleSpec {
     pub above: Option<Profile>,
     /// In elasticity, the rigid body that the sides cannot enter.
     pub rigid: Option<Rigid>,
-    /// … or its surface, as faces of a mesh.
+    /// In elasticity, the surface of the rigid body as faces of a mesh, in place of `rigid`.
     pub surface: Option<RigidSurface>,
     /// The gap that is added to the distance from the rigid body.
     pub gap: Profile,

@@ -1,4 +1,4 @@
-//! What the user writes, as plain data.
+//! The input of the user, as plain data.
 
 pub mod body;
 pub mod cells;

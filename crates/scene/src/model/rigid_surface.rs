@@ -66,7 +66,7 @@ impl RigidSurface {
         })
     }
 
-    /// The same surface with normals to the other side.
+    /// This surface with its normals reversed.
     pub(crate) fn reversed(&self) -> RigidSurface {
         RigidSurface {
             name: self.name.clone(),

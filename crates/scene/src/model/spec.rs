@@ -65,9 +65,9 @@ pub struct SceneSpec {
     pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
-    /// What of the input is left out, ignored or replaced: a sentence each.
+    /// Sentences on parts of the input that are left out, ignored or replaced.
     pub notes: Vec<String>,
-    /// What else users are told: what entries leave out that many scenes have, such as boundary groups that none names.
+    /// Further remarks for users: parts that entries leave out in many scenes, such as boundary groups that none names.
     pub asides: Vec<String>,
 }
 

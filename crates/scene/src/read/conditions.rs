@@ -13,7 +13,7 @@ use mesh::CellMesh;
 /// The boundary groups of the parts of a body.
 pub(super) struct Groups {
     names: BTreeSet<String>,
-    /// Those that have a face on the boundary of a part.
+    /// The names of the groups that have a face on the boundary of a part.
     with_faces: BTreeSet<String>,
 }
 
@@ -43,7 +43,7 @@ impl Groups {
 /// Given values by boundary group.
 type Held = Vec<(String, [Option<Field>; 3])>;
 
-/// What a body has at boundary groups. What is not there leaves a body as it is.
+/// The loads, springs and given values of a body at its boundary groups. An absent entry leaves a body as it is.
 #[derive(Default)]
 pub(super) struct OfGroups {
     /// Loads, each list with whether it is one of pressures.

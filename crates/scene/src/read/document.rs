@@ -80,7 +80,7 @@ impl<'a> Item<'a> {
         matches!(&self.value, Value::Text(text) if text == word)
     }
 
-    /// What one of several words means.
+    /// The meaning of the text, which must be one of several words.
     pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Result<T> {
         match words.iter().find(|(word, _)| self.is(word)) {
             Some((_, meaning)) => Ok(*meaning),
@@ -214,7 +214,7 @@ impl<'a> Section<'a> {
         entry.map(|(_, _, item)| item)
     }
 
-    /// What `read` makes of the value of `key`, if it is there.
+    /// The result of `read` for the value of `key`, if it is there.
     pub fn read<T>(
         &mut self,
         key: &'static str,
@@ -235,7 +235,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// What `read` makes of each of the tables under `key`.
+    /// The results of `read` for the tables under `key`.
     pub fn each<T>(
         &mut self,
         key: &'static str,

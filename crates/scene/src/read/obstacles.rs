@@ -13,7 +13,7 @@ use crate::model::rigid::Rigid;
 use crate::model::rigid_surface::RigidSurface;
 use base::{Error, Result};
 
-/// What an elastic body cannot enter, and how it is taken.
+/// The rigid body that an elastic body cannot enter, and how it is taken.
 #[derive(Default)]
 struct RigidShape {
     rigid: Option<Rigid>,

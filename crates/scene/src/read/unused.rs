@@ -1,4 +1,4 @@
-//! What of the mesh of a scene no entry takes: cells of no body, groups that nothing names, faces inside of bodies.
+//! Parts of the mesh of a scene that no entry takes: cells of no body, groups that nothing names, inner faces.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -10,7 +10,7 @@ use mesh::{Group, Members, MeshFile, SKIN};
 /// Groups that are named one by one.
 const LIST: usize = 8;
 
-/// What a scene says of boundary groups.
+/// The entries of a scene that may name boundary groups.
 pub(super) struct Entries<'s> {
     pub bodies: &'s [BodySpec],
     pub ties: &'s [TieSpec],

@@ -154,7 +154,7 @@ impl Reader {
         )
     }
 
-    /// What `read` makes of the values of a table whose keys are sides, and the sides.
+    /// The results of `read` for the values of a table whose keys are sides, each with its side.
     pub(super) fn by_side<T>(
         &self,
         item: &Item,
@@ -170,7 +170,7 @@ impl Reader {
         Ok(out)
     }
 
-    /// What `read` makes of the values of a table with some of the keys x, y (and z), by component.
+    /// The results of `read` for the values of a table with some of the keys x, y (and z), by component.
     pub(super) fn by_axis<T>(
         &self,
         section: &mut Section,

@@ -23,7 +23,7 @@ pub(crate) struct Rows {
     pub notes: Vec<String>,
 }
 
-/// What rows are made of.
+/// The data from which rows are made.
 pub(crate) struct Joined<'a> {
     pub spec: &'a SceneSpec,
     pub interfaces: &'a mut [Interface],

@@ -1,10 +1,10 @@
-//! What a scene knows about the node of a body.
+//! Properties of the node of a body in a scene.
 
 use super::points::Along;
 use crate::body::Body;
 use fetifeti::BodyNode;
 
-/// What the `bodies` of a scene say about a node.
+/// Properties of a node, as the `bodies` of a scene have them.
 pub trait AtNode {
     /// u along `direction` at this member.
     fn along(&self, bodies: &[Body], direction: [f64; 3]) -> Along;

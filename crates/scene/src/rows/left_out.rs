@@ -1,4 +1,4 @@
-//! What the entries that name surfaces leave out: nodes beyond the tolerance of a tie, and faces without a partner.
+//! Parts that entries with names of surfaces leave out: nodes beyond the tolerance of a tie, faces without a partner.
 
 use std::collections::{HashMap, HashSet};
 

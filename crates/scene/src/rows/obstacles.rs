@@ -32,7 +32,8 @@ pub struct Obstacle {
     pub limits: Limits,
     /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
-    /// … or the part of its surface that lies opposite the side: the rows are those of [`Scene::mortar`].
+    /// In elasticity, in place of `rigid`, the part of the rigid body's surface that lies opposite the side: the rows
+    /// are those of [`Scene::mortar`].
     ///
     /// [`Scene::mortar`]: crate::Scene::mortar
     pub surface: Option<Opposite>,
@@ -78,7 +79,7 @@ impl<'a> Standing<'a> {
 /// The ways of nodes that count as touching, by number of the entry among the obstacles, body, side and node.
 pub(crate) type Adjusted = HashMap<(usize, usize, usize, usize), [f64; 3]>;
 
-/// Those of the obstacles of a scene; `first` is the number of the first obstacle entry.
+/// The ways of nodes that count as touching the obstacles of a scene; `first`: the number of the first obstacle entry.
 pub(crate) fn adjusted(obstacles: &[Obstacle], first: usize) -> Adjusted {
     let mut out = Adjusted::new();
     for obstacle in obstacles {
@@ -286,7 +287,7 @@ pub(crate) fn find(
     Ok(found.into_iter().map(named).collect())
 }
 
-/// What the entries say about the nodes of one side.
+/// The data of the entries for the nodes of one side.
 #[derive(Default)]
 struct Found {
     surface: Option<Opposite>,

@@ -8,7 +8,7 @@ use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 
 /// An entry that names sides.
 pub(crate) struct Origin {
-    /// What it names: two surfaces, or sides of bodies.
+    /// The names in the entry: of two surfaces, or of sides of bodies.
     pub names: [String; 2],
     /// Where it was written, or empty.
     pub written: String,
@@ -42,7 +42,7 @@ impl<'b> Names<'b> {
         }
     }
 
-    /// What a pair names, and the bodies and sides that have it; `None` for one without sides.
+    /// The names in a pair, and the bodies and sides that have each of them; `None` for a pair without sides.
     fn find(&self, pair: &Pair, sides: Option<[usize; 2]>) -> Option<Found> {
         match (pair, sides) {
             (Pair::Surfaces(a, b), _) => Some((

@@ -13,7 +13,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// What is reached from the bodies that are `whole`. `sizes` has the number of nodes of a body.
+    /// The nodes that are reached from the bodies that are `whole`. `sizes` has the number of nodes of a body.
     pub fn of(whole: Vec<bool>, sizes: impl Fn(usize) -> usize, interfaces: &[Interface]) -> Reach {
         let everywhere = whole.iter().all(|w| *w);
         let nodes = vec![Vec::new(); whole.len()];

@@ -1,5 +1,5 @@
-//! What a row joins: all its nodes with their coefficients, also those of given values. The forces of its multiplier
-//! act there, each at its own node.
+//! The terms of a row: all nodes that it joins with their coefficients, also those of given values. The forces of its
+//! multiplier act there, each at its own node.
 
 use super::equations::Equation;
 use super::mortar_row::MortarRow;

@@ -1,4 +1,4 @@
-//! What the rows of a scene do to w: equations leave unknowns out, inequalities turn nodes.
+//! The effect of the rows of a scene on w: equations leave unknowns out, inequalities turn nodes.
 
 use std::collections::BTreeMap;
 

@@ -80,7 +80,7 @@ pub struct Record {
     pub last_place: Option<f64>,
     /// With deflation, by τ.
     pub runs: Vec<AdaptiveRun>,
-    /// The same fields on finer elements.
+    /// Results for the same fields on finer elements.
     pub fine: Option<Fine>,
 }
 

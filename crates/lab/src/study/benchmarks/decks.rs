@@ -21,7 +21,7 @@ const DECKS: &str = "/usr/share/doc/calculix-ccx-test/examples/test";
 /// Number of a deck, and what its displacements may differ; `None`: CalculiX's contact is soft there.
 const LIMITS: [(usize, Option<f64>); 4] = [(1, Some(1e-3)), (2, Some(5e-3)), (3, None), (4, None)];
 
-/// What the displacements may differ from those of CalculiX with contact of 10¹⁵ N/m³.
+/// The largest permitted difference of displacements from those of CalculiX with contact of 10¹⁵ N/m³.
 const STIFF: f64 = 5e-3;
 
 /// The decks, and why some of them or CalculiX did not run. On one rank only: the program starts others.

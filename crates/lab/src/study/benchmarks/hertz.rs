@@ -11,7 +11,7 @@ use base::{Error, Result};
 const YOUNG: [f64; 2] = [210e3, 70e3];
 const POISSON: f64 = 0.3;
 
-/// What force, half-width and peak may be off on the finest mesh.
+/// The largest permitted errors of force, half-width and peak on the finest mesh.
 struct Limits {
     force: f64,
     curve: f64,

@@ -23,7 +23,7 @@ use runner::Runner;
 use base::Result;
 use petsc::Session;
 
-/// What a case returns: its series, and why parts of it were not run.
+/// The results of a case: its series, and why parts of it were not run.
 type Found = (Vec<Series>, Vec<String>);
 
 /// A case of the study.

@@ -67,7 +67,7 @@ pub fn table(case: &CaseReport) -> Table {
     columns.table()
 }
 
-/// What a case says beside its table.
+/// The remarks on a case beside its table.
 fn remarks(case: &CaseReport) -> String {
     let orders = case.series.iter();
     let orders: Vec<String> = orders

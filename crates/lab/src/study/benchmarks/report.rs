@@ -1,4 +1,4 @@
-//! What the study returns: cases, series of meshes, values beside their references.
+//! The results of the study: cases, series of meshes, values beside their references.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,9 +16,9 @@ pub struct BenchmarksReport {
 pub struct CaseReport {
     /// Its name.
     pub case: String,
-    /// What is solved.
+    /// The problem that is solved.
     pub title: String,
-    /// What the reference is, and who says so.
+    /// The reference, and its source.
     pub reference: String,
     /// Why the case, or a part of it, was not run.
     pub skipped: Vec<String>,
@@ -29,7 +29,7 @@ pub struct CaseReport {
 /// Meshes of one kind, from the coarsest to the finest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Series {
-    /// What they have in common.
+    /// The name of the series: the property that its meshes have in common.
     pub name: String,
     /// Order of convergence of the first value: the slope of log(error) over log(mesh size), by least squares. `None`
     /// for a single mesh, and where errors are rounding.
@@ -41,7 +41,7 @@ pub struct Series {
 /// One mesh and its solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
-    /// What distinguishes it.
+    /// The name of the mesh: the property that distinguishes it.
     pub mesh: String,
     /// Mesh size relative to a length of the case: the half-width of the contact, the length of a side.
     pub size: f64,
@@ -70,7 +70,7 @@ pub struct Mesh {
 /// A value beside its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Value {
-    /// What it is.
+    /// The name of the quantity.
     pub quantity: String,
     /// The value; `None`: the value is an error already.
     pub ours: Option<f64>,
@@ -168,7 +168,7 @@ impl CaseReport {
         self.series.iter().flat_map(|s| &s.meshes)
     }
 
-    /// What misses its tolerance or did not converge: a sentence each.
+    /// Failures, a sentence for each mesh that did not converge and each value that misses its tolerance.
     pub fn missed(&self) -> Vec<String> {
         let mut out = Vec::new();
         for series in &self.series {

@@ -15,7 +15,7 @@ use report::output;
 /// Relative residual that is asked of the method.
 const RTOL: f64 = 1e-10;
 
-/// What the cases share.
+/// The data that the cases share.
 pub struct Runner<'a> {
     /// PETSc and the ranks.
     pub session: &'a Session,

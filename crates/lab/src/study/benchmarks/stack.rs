@@ -5,7 +5,7 @@ use super::runner::{Run, Runner};
 use base::Result;
 use fetifeti::substructures::RowSource;
 
-/// What a force may be off, relative to the whole weight.
+/// The largest permitted error of a force, relative to the whole weight.
 const LIMIT: f64 = 1e-8;
 
 /// Height of a block; its length is 2, its depth in space 1.

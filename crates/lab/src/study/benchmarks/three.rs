@@ -4,7 +4,7 @@ use super::report::{Series, Value};
 use super::runner::Runner;
 use base::Result;
 
-/// What a pressure may be off.
+/// The largest permitted error of a pressure.
 const LIMIT: f64 = 1e-9;
 
 /// Pressures from the right and from above.

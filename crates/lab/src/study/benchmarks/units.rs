@@ -8,10 +8,10 @@ use base::Result;
 /// Name, units in a metre, and the largest relative difference from the scene in metres.
 const UNITS: [(&str, f64); 3] = [("m", 1.0), ("mm", 1e3), ("um", 1e6)];
 
-/// What pressures and energies may differ.
+/// The largest permitted difference of pressures and energies.
 const LIMIT: f64 = 1e-12;
 
-/// What numbers of iterations may differ: the last one may be decided by rounding.
+/// The largest permitted difference of numbers of iterations: the last one may be decided by rounding.
 const ITERATIONS: f64 = 2.0;
 
 /// The rings of SSNP167, elements of first and second order.

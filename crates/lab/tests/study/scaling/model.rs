@@ -119,7 +119,7 @@ fn messages_come_on_top() {
     assert_eq!(many.total(5.0), total);
 }
 
-/// What the model says of the shares is what ranks have: a square of bodies, each coupled with its eight neighbours.
+/// The modelled shares are those that ranks have: a square of bodies, each coupled with its eight neighbours.
 #[test]
 fn shares_are_those_of_the_factor() {
     let n = 100usize;
@@ -150,8 +150,8 @@ fn shares_are_those_of_the_factor() {
     }
 }
 
-/// What is done one after the other when so many ranks share a factor: the largest over the ways from the subtrees to
-/// the root, each counted by itself.
+/// The work that is done one after the other when so many ranks share a factor: the largest over the ways from the
+/// subtrees to the root, each counted by itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Way {
     /// Rows.

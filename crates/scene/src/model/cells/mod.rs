@@ -151,7 +151,7 @@ impl Cells {
         self.data.range
     }
 
-    /// The same cells over a whole grid of bodies instead of one body.
+    /// These cells, which cover a whole grid of bodies instead of one body.
     pub(crate) fn over(&self, bodies: [usize; 3]) -> Cells {
         Cells {
             data: Arc::clone(&self.data),

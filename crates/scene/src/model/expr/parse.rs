@@ -100,7 +100,7 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    /// What `operand` parses, one level deeper.
+    /// The expression that `operand` parses, one level deeper.
     fn nested(
         &mut self,
         operand: impl FnOnce(&mut Self) -> Result<Ast, String>,
