@@ -18,7 +18,7 @@ const KEYS: Keys = &[
 ];
 
 /// No wall of the study takes more steps.
-const STEPS: usize = 40;
+const STEPS: usize = 50;
 
 fn report(ranks: usize, dir: &Scratch, case: &[&str]) -> WallsReport {
     let file = dir.path(&format!("walls-{ranks}.json"));
