@@ -43,13 +43,14 @@
 //! MATIS, CSR ── embed ──┘
 //! ```
 //!
-//! A program may enter at [`Substructures`] with matrices of its own. `scene` builds substructures with `mesh` and
-//! `fem`; `embed` finds them in matrices of other PETSc programs (docs/embedding.md). The solver does not know where
-//! they came from. `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] combines both.
+//! A program may enter at [`Substructures`] with matrices of its own. The crate `fetifeti-scene` builds substructures
+//! from scenes; `embed` finds them in matrices of other PETSc programs (docs/embedding.md). The solver does not know
+//! where they came from. `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] combines
+//! both.
 //!
 //! The modules have an order, and each imports only from those before it. docs/architecture.md has the map, and follows
-//! a load, a contact row and a MATIS through the code. [`petsc`] and the C interface `capi` are the only
-//! modules with unsafe code.
+//! a load, a contact row and a MATIS through the code. The crate [`petsc`] and the C interface `capi` are the only ones
+//! with unsafe code. docs/glossary.md has symbols and words.
 //!
 //! # Only what the problem needs
 //!

@@ -1,4 +1,4 @@
-//! The length of a Newton step on the augmented Lagrangian, from φ along the step.
+//! The line search of a Newton step on the augmented Lagrangian, from φ along the step.
 //!
 //! ```text
 //!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,           s_j = μ_j + (B u − c)_j / C_j

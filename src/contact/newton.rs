@@ -1,4 +1,4 @@
-//! Newton steps on the augmented Lagrangian φ, each as long as φ falls.
+//! Semismooth Newton steps on the augmented Lagrangian φ, with a line search.
 //!
 //! ```text
 //!     A = { s > 0 }        K u⁺ + Bᵀ λ⁺ = f,   B u⁺ − C λ⁺ = c − C μ on A        u ← u + t (u⁺ − u)

@@ -1,4 +1,4 @@
-//! One error type for the crate. Every message is one sentence that names the file, the line or body,
+//! One error type for all crates. Every message is one sentence that names the file, the line or body,
 //! what was found and what was expected.
 
 use std::fmt;
@@ -66,7 +66,7 @@ impl Fault {
     }
 }
 
-/// Shorthand for results of this crate.
+/// Shorthand for results with this error.
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {

@@ -15,9 +15,9 @@
 //! | [`panel`], `strips` | how the columns of a front lie in memory, and those of its update |
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
-//! | `null_vector` | what a semidefinite matrix maps to zero |
+//! | `null_vector` | null vectors of a semidefinite matrix |
 //! | `deal`, [`team`], `narrow`, [`shared`] | which rank has which front, the ranks that share a factor, what each of them knows, and the factor |
-//! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
+//! | [`interior`] | the face for subdomains: one analysis for a pattern, a factor and S for each matrix |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
 

@@ -1,4 +1,7 @@
-//! The command-line program: arguments, then run, then an exit code.
+//! The program `fetifeti`: arguments, then run, then an exit code.
+//!
+//! A command reads its scene (`fetifeti-scene`), asks the solver (`fetifeti`) or the laboratory (`fetifeti-lab`), and
+//! hands what they answer to `fetifeti-report`. Checkpoints ([`checkpoint`]) are written and read here.
 
 mod args;
 mod balance;

@@ -1,4 +1,12 @@
-//! Meshes: boxes of rectangles, their partition into subdomains, the classification of their nodes; cells of any kind.
+//! Meshes of bodies: boxes, and cells of any kind.
+//!
+//! - [`BoxMesh`]: boxes of rectangles, cut into equal subdomains; [`CellMesh`]: cells of any kind, with groups of sides;
+//! - [`partition`]: cuts the mesh of a body into subdomains, and finds the vertices, edges and faces that they share;
+//! - [`gmsh`]: reads and writes files of Gmsh; [`MeshFile`] is a mesh as any reader gives it, [`Extractor`] takes the
+//!   bodies out of it;
+//! - [`defects`](fn@defects): cells that no method can take, and cells that deserve a warning.
+//!
+//! No coefficient, load or material is known here.
 
 mod body;
 mod boxes;

@@ -1,4 +1,10 @@
 //! Ranks and threads: messages between ranks, the threads of a rank, and what both cost.
+//!
+//! - [`exchange`], [`post`]: irregular messages during set-up, and messages that go on their way while the sender
+//!   computes;
+//! - [`halo`]: ghost entries of a distributed vector, by PETSc's scatters;
+//! - [`team`]: the threads that share one rank's subdomains;
+//! - [`clock`], [`traffic`]: seconds by phase, and counters of messages and reductions.
 
 pub mod available;
 pub mod clock;

@@ -1,4 +1,4 @@
-//! GᵀG after some rows more hold, without another factorisation.
+//! GᵀG after some rows more hold, without another factorisation: the Woodbury formula.
 //!
 //! Let A = GᵀG leave motions free, and let each row cᵢ that is put back take one motion nᵢ: with C = (c₁ …) and N =
 //! (n₁ …), A N = 0, W = CᵀN is regular. Then A + C Cᵀ is inverted by the factor of A,

@@ -1,7 +1,7 @@
 //! Raw bindings to the part of PETSc and SLEPc that fetifeti uses.
 //!
 //! Names and meaning are PETSc's own; `ff_*` functions come from `shim.c` and stand for macros, inline functions and
-//! things that differ between PETSc 3.18 and 3.26. The safe layer is `fetifeti::petsc`.
+//! things that differ between PETSc 3.18 and 3.26. The safe layer is the crate `fetifeti-petsc`.
 #![allow(
     non_camel_case_types,
     non_snake_case,

@@ -1,4 +1,4 @@
-//! Small linear algebra that the whole crate uses: sparse matrices, dense kernels, vectors in space. No MPI, no PETSc.
+//! Small linear algebra that all crates use: sparse matrices, dense kernels, vectors in space. No MPI, no PETSc.
 
 pub mod csr;
 pub mod dense;
