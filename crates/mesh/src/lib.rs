@@ -1,6 +1,7 @@
 //! Meshes of bodies: boxes, and cells of any kind.
 //!
-//! - [`BoxMesh`]: boxes of rectangles, cut into equal subdomains; [`CellMesh`]: cells of any kind, with groups of sides;
+//! - [`BoxMesh`]: boxes of rectangles, cut into equal subdomains; [`CellMesh`]: cells of any kind, with groups of
+//!   sides;
 //! - [`partition`]: cuts the mesh of a body into subdomains, and finds the vertices, edges and faces that they share;
 //! - [`gmsh`]: reads and writes files of Gmsh; [`MeshFile`] is a mesh as any reader gives it, [`Extractor`] takes the
 //!   bodies out of it;
