@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.." || exit 3
 
 # In the background: `fetifeti`, mpirun, compilers of C and Fortran. Studies and comparisons start processes, too, but
 # stand with the others, so that both sides take about as long.
-outside=(--test cli --test embedding --test linear --test ranks)
+outside=(--test cli --test embedding --test ranks)
 inside=(--lib)
 for path in tests/*.rs tests/*/main.rs; do
     name=${path#tests/} name=${name%.rs} name=${name%/main}
