@@ -52,11 +52,11 @@ pub struct BodyNode {
 /// The origin of a row, in the numbering of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RowSource {
-    /// Two bodies that meet; in a scene the index into [`Scene::interfaces`](scene::Scene::interfaces).
+    /// Two bodies that meet; in a scene the index into `Scene::interfaces`.
     Interface(usize),
-    /// A body beside a rigid obstacle; in a scene the index into [`Scene::obstacles`](scene::Scene::obstacles).
+    /// A body beside a rigid obstacle; in a scene the index into `Scene::obstacles`.
     Obstacle(usize),
-    /// An equation between unknowns; in a scene the index into [`Scene::equations`](scene::Scene::equations).
+    /// An equation between unknowns; in a scene the index into `Scene::equations`.
     Equation(usize),
 }
 

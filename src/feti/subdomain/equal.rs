@@ -3,7 +3,7 @@
 //! Two subdomains are equal if interface and averages are the same and one matrix is a multiple of the other, up to the
 //! rounding of assembly. Their position does not matter. On a regular grid a handful of different subdomains remain,
 //! whatever their coefficients, and the dense operators of these stay in the cache. Those that are equal but for a
-//! rotation or reflection are found by [`congruent`](super::congruent).
+//! rotation or reflection are found by `congruent`.
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::HashMap;

@@ -10,7 +10,7 @@
 //! careful: exact solves first, then one row at a time.
 //!
 //! These sets need not settle. If a set comes back again, if there are too many, or if the last row that holds a body
-//! pulls, the sets come from a method that converges (see [`Search`](super::damped::Search)). Each of its sets is
+//! pulls, the sets come from a method that converges (see [`Search`]). Each of its sets is
 //! tried: its equations are solved, and the sets that follow by the rule above, for as long as there are fewer and
 //! fewer wrong rows. The loop ends with the first set that satisfies all conditions. So the method guarantees the end,
 //! and the trials give the accuracy.

@@ -37,9 +37,9 @@ pub struct Comparison {
 /// Jobs are started with the running executable, which must be the `fetifeti` program.
 ///
 /// # Errors
-/// [`Error::Input`] for mistakes that are found before anything runs, and where the first job (ours) finds the problem
-/// unsolvable; [`Error::NotConverged`] when ours does not converge; [`Error::Environment`] without mpirun. A baseline
-/// that fails is no error but a row with a message.
+/// `Error::Input` for mistakes that are found before anything runs, and where the first job (ours) finds the problem
+/// unsolvable; `Error::NotConverged` when ours does not converge; `Error::Environment` without mpirun. A baseline that
+/// fails is no error but a row with a message.
 pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
     let scene = distribution::load(session, &wanted.scene)?;
     let baselines = session.agree(table::select(&wanted.with))?;
