@@ -32,7 +32,7 @@ mod loads;
 mod matrices;
 mod meshes;
 pub mod model;
-pub(crate) mod need;
+pub mod need;
 mod numbering;
 mod part;
 mod plan;

@@ -37,7 +37,7 @@ const FACTOR: [f64; 2] = [4.0, 15.0];
 
 /// Bytes that a scene will take.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Need {
+pub struct Need {
     /// Elements.
     pub elements: f64,
     /// Subdomains.

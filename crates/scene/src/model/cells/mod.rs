@@ -200,7 +200,7 @@ impl Cells {
     }
 
     /// The first cell whose value is `wrong`: the value, and the name of the cell in messages.
-    pub(crate) fn find(&self, wrong: impl Fn(f64) -> bool) -> Result<Option<(f64, String)>> {
+    pub fn find(&self, wrong: impl Fn(f64) -> bool) -> Result<Option<(f64, String)>> {
         let [nx, ny, nz] = self.data.counts;
         let mut reader = self.data.reader()?;
         let mut row = Vec::new();
