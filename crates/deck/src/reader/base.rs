@@ -7,7 +7,7 @@ use crate::cards::{Card, Cards};
 use crate::keywords::verdict;
 use crate::model::Deck;
 use crate::place::{Files, Note, Place};
-pub use base::Result;
+use base::Result;
 use elements::kind::CellKind;
 use mesh::Digits;
 use std::collections::HashMap;

@@ -23,7 +23,7 @@ use super::keywords::{verdict, Verdict};
 use super::model::Deck;
 use super::numbers::clip;
 use super::place::Note;
-use base::Result;
+use ::base::Result;
 use mesh::MeshFile;
 
 impl<'a> Reader<'a> {

@@ -11,9 +11,7 @@ use crate::model::body::{BodySpec, Cut};
 use crate::model::rigid_surface::RigidSurface;
 use crate::quantity::unfit_size;
 use base::{Error, Result};
-pub use mesh::{
-    bytes, defects, gmsh, of_both_sides, BoxMesh, CellMesh, Extractor, Members, MeshFile,
-};
+use mesh::{bytes, defects, gmsh, of_both_sides, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 

@@ -22,11 +22,11 @@ use super::model::body::{BodySpec, Load, POISSON};
 use super::model::grid::GridSpec;
 use super::model::spec::SceneSpec;
 use super::validate::MOST_BODIES;
+use ::mesh::BoxMesh;
 use base::{Error, Result};
 use document::{Item, Section, Value};
 use elements::form::Form;
 use fields::Shape;
-use mesh::BoxMesh;
 pub(super) use values::MOST as MOST_IN_A_ROW;
 use values::MOST;
 
