@@ -53,7 +53,7 @@ fn run(session: &Session) -> Result<()> {
     let spectrum = solver.spectrum()?.expect("there are multipliers");
     let solution = solver.solve()?;
     if !solution.converged() {
-        return Err(Error::NotConverged(solution.status.to_string()));
+        return Err(Error::not_converged(solution.status.to_string()));
     }
 
     // The same sheet by one dense matrix.

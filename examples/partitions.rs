@@ -124,7 +124,7 @@ fn run(session: &Session) -> Result<()> {
     let solver = FetiFeti::new(session, substructures, settings)?;
     let solution = solver.solve()?;
     if !solution.converged() {
-        return Err(Error::NotConverged(solution.status.to_string()));
+        return Err(Error::not_converged(solution.status.to_string()));
     }
     let spectrum = solution.estimate.expect("it iterates");
     let facts = solver.facts();

@@ -1,7 +1,7 @@
 //! Rust errors as C sees them: a status, and a message on request.
 
-use crate::{Error, Result};
-use base::Fault;
+use crate::Result;
+use base::{ErrorKind, Fault};
 use petsc::raw::{self, caught, settle};
 use petsc::Session;
 use std::cell::RefCell;
@@ -48,13 +48,13 @@ pub fn classified(
     let Err((error, common)) = concluded else {
         return 0;
     };
-    let (status, code) = match &error {
-        Error::Petsc { code, .. } => (RAISED, *code),
-        Error::Argument(fault, _) => (SENTENCE, *fault as c_int),
-        Error::Input(_) => (SENTENCE, input as c_int),
-        Error::Unfit(_) => (SENTENCE, Fault::Wrong as c_int),
-        Error::NotConverged(_) => (SENTENCE, ERR_NOT_CONVERGED),
-        Error::Environment(_) => (SENTENCE, ERR_LIB),
+    let (status, code) = match error.kind() {
+        ErrorKind::Petsc(code) => (RAISED, code),
+        ErrorKind::Argument(fault) => (SENTENCE, fault as c_int),
+        ErrorKind::Input => (SENTENCE, input as c_int),
+        ErrorKind::Unfit => (SENTENCE, Fault::Wrong as c_int),
+        ErrorKind::NotConverged => (SENTENCE, ERR_NOT_CONVERGED),
+        _ => (SENTENCE, ERR_LIB),
     };
     let status = if status == SENTENCE && !common {
         ALONE

@@ -53,11 +53,10 @@ impl Monitor {
         let code = unsafe { (self.function)(&told, self.context) };
         session.agree(match code {
             0 => Ok(()),
-            code => Err(Error::Petsc {
-                code,
-                call: "the monitor of FetiFetiContactMonitorSet",
-                trace: Vec::new(),
-            }),
+            code => {
+                let call = "the monitor of FetiFetiContactMonitorSet";
+                Err(Error::petsc(code, call, Vec::new()))
+            }
         })
     }
 }

@@ -6,6 +6,7 @@ use crate::embed::{Embedded, Local, SetUp, Torn, Work};
 use crate::feti::krylov::solve::Look;
 use crate::status::Status;
 use crate::{Error, MethodSettings, Result};
+use base::ErrorKind;
 use petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -94,7 +95,7 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         let made = setup(&session, &a, &prefix, wishes, old.map(|old| *old));
         // A wrong input stops the host with an error. A matrix that turns out to be no stiffness matrix is reported by
         // KSPGetConvergedReason.
-        unfit = matches!(&made, Err(Error::Unfit(_)));
+        unfit = matches!(&made, Err(error) if error.kind() == ErrorKind::Unfit);
         // SAFETY: by the caller.
         unsafe { *solver = Box::into_raw(Box::new(made?)).cast() };
         Ok(())

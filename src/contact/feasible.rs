@@ -79,4 +79,5 @@ fn contradiction(problem: &Substructures, block: &Block, rows: &[usize]) -> Erro
         bodies.join(", "),
         rows.len()
     ))
+    .at(problem.location(&block.bodies()))
 }

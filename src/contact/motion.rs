@@ -17,7 +17,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::projector::gram::FEW;
-use crate::feti::projector::held::{moving, weakness};
+use crate::feti::projector::held::{moved, moving, weakness};
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::rows::Rows;
 use crate::substructures::Substructures;
@@ -127,7 +127,8 @@ pub fn pushed_away(
         "{who} pushed away for ever{way}: the load does not balance and no Dirichlet side, tie, \
          contact or obstacle stands against it (resultant {left:.6e} in the direction of the motion), \
          expected a support on that side{weak}"
-    )))
+    ))
+    .at(problem.location(&moved(&dual.natural.columns, rest))))
 }
 
 /// The different directions among the rows of G, scaled to a largest entry of 1, as columns of length r; and for each

@@ -11,8 +11,9 @@ use super::torn::GivenRow;
 use super::touched::Here;
 use crate::feti::Numbers;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
-use crate::{Error, FetiFeti, Result};
+use crate::{FetiFeti, Result};
 use base::linalg::csr::Csr;
+use base::ErrorKind;
 use parallel::exchange::any;
 use petsc::Mat;
 
@@ -124,7 +125,8 @@ impl Embedded {
         let solver = match self.solver.into_inner().renewed(numbers, rows) {
             Ok(Some(solver)) => solver,
             // The set-up of everything says what is wrong with the matrix.
-            Ok(None) | Err(Error::Unfit(_)) => return Ok(None),
+            Ok(None) => return Ok(None),
+            Err(error) if error.kind() == ErrorKind::Unfit => return Ok(None),
             Err(other) => return Err(other),
         };
         let mut out = Embedded {

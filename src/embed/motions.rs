@@ -207,7 +207,7 @@ fn indefinite(subdomain: usize, part: &Part, e: Indefinite) -> Error {
     let energy = e
         .energy
         .map_or(String::new(), |e| format!(" ({e:.2e} of its terms)"));
-    Error::Unfit(format!(
+    Error::unfit(format!(
         "the operator is indefinite: the matrix of subdomain {subdomain} has a motion of negative energy{energy} \
          that moves global dof {} most, expected a stiffness matrix (a Helmholtz shift or a wrong sign makes it \
          indefinite); take the shift out, or a KSP and PC for indefinite operators, such as -ksp_type gmres with \

@@ -155,7 +155,7 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
     for i in unknowns() {
         let (col, val) = piece.k.row(i);
         if let Some((&j, v)) = col.iter().zip(val).find(|(_, v)| !v.is_finite()) {
-            return Err(Error::Unfit(format!(
+            return Err(Error::unfit(format!(
                 "the local matrix of a subdomain has {v} at global dofs ({}, {}), expected finite numbers: \
                  look where the host's assembly divides by zero",
                 piece.dofs[i], piece.dofs[j as usize]
@@ -175,7 +175,7 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
             "a stiffness matrix has a positive one; change the signs of operator and right-hand side if all are \
              negative, and take the shift out if it is a Helmholtz operator"
         };
-        return Err(Error::Unfit(format!(
+        return Err(Error::unfit(format!(
             "the local matrix of a subdomain has {d} on the diagonal at global dof {dof}, \
              expected a positive number: {why}"
         )));

@@ -318,12 +318,12 @@ fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> 
 
 /// Explains the remedy if PETSc cannot test convergence in the norm that is set.
 fn unfit_norm(error: Error, prefix: &str) -> Error {
-    match error {
-        Error::Petsc { trace, .. } if !trace.is_empty() => Error::input(format!(
-            "option -{prefix}ksp_type: {} (set -{prefix}ksp_norm_type to one that it supports, such as preconditioned)",
-            trace[0]
+    match error.trace().first() {
+        Some(message) => Error::input(format!(
+            "option -{prefix}ksp_type: {message} (set -{prefix}ksp_norm_type to one that it supports, such as \
+             preconditioned)"
         )),
-        other => other,
+        None => error,
     }
 }
 

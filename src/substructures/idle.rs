@@ -45,7 +45,7 @@ const TURNED: f64 = 100.0;
 /// Returns an error if the load does work on an idle motion: nothing stands against it. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] with the motion, the same on all ranks.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the motion, the same on all ranks.
 pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()> {
     let sums = sums(comm, local, |s, idle| {
         let loads = idle.dofs.iter().map(|&i| s.f[i as usize]);
@@ -79,7 +79,7 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
         .find(|words| !words.is_empty())
         .unwrap_or_default();
     let text: Vec<u8> = text.into_iter().map(|b| b as u8).collect();
-    Err(Error::Input(String::from_utf8_lossy(&text).into_owned()))
+    Err(Error::input(String::from_utf8_lossy(&text).into_owned()))
 }
 
 /// Takes the displacement along idle motions away. Collective.

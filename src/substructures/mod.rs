@@ -12,6 +12,7 @@ pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, S
 use std::sync::Arc;
 
 use base::linalg::csr::Csr;
+use base::Location;
 
 /// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
 ///
@@ -150,6 +151,12 @@ pub struct Substructures {
 }
 
 impl Substructures {
+    /// These bodies as the place of an error.
+    pub(crate) fn location(&self, bodies: &[u32]) -> Location {
+        let names = bodies.iter().map(|&b| &self.body_names[b as usize]);
+        names.fold(Location::default(), |place, name| place.with_body(name))
+    }
+
     /// A remark on the cells of the first of some bodies with motions without energy, to be put behind a sentence;
     /// empty if there is none.
     pub(crate) fn weakness(&self, bodies: &[u32]) -> String {

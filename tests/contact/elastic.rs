@@ -52,7 +52,7 @@ fn judge(session: &Session, case: &Case, kind: ContactType) -> std::result::Resu
         return contact_judge::judge(session, what, cards, kind).map(|_| ());
     }
     match contact_judge::answer(session, scene, problem, false, kind) {
-        Err(Error::Input(_)) => Ok(()),
+        Err(error) if error.is_input() => Ok(()),
         Err(why) => Err(why.to_string()),
         Ok(_) => Err("solved, but has no solution".into()),
     }

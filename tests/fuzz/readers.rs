@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::checkpoint;
-use base::{Error, Result};
+use base::{ErrorKind, Result};
 use fetifeti::Settings;
 use mesh::{defects, gmsh, Extractor, Members, MeshFile};
 use petsc::{Options, Session};
@@ -21,7 +21,8 @@ const MOST_BODIES: usize = 40;
 fn judge<T>(result: Result<T>, place: &str) -> Option<T> {
     match result {
         Ok(value) => Some(value),
-        Err(Error::Input(said) | Error::Environment(said)) => {
+        Err(error) if matches!(error.kind(), ErrorKind::Input | ErrorKind::Environment) => {
+            let said = error.to_string();
             assert!(!said.contains('\n'), "several lines: {said}");
             assert!(said.contains(place), "{place} is not named: {said}");
             None
@@ -202,7 +203,8 @@ pub fn options(bytes: &[u8]) {
             set.push(name);
         }
         match Settings::default().with_options(session) {
-            Ok(_) | Err(Error::Petsc { .. }) => {}
+            Ok(_) => {}
+            Err(error) if matches!(error.kind(), ErrorKind::Petsc(_)) => {}
             refused => {
                 let _ = judge(refused, "-fetifeti_");
             }

@@ -12,6 +12,7 @@ mod scenes;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 
+use base::ErrorKind::{Input, NotConverged, Unfit};
 use base::{Error, Result};
 use lab::assembled::layout::Layout;
 use lab::assembled::reference::{Precision, Reference};
@@ -127,7 +128,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
             let active = outcome.contact.map(|c| c.active).unwrap_or_default();
             let verdict = match judge(session, scene, &[(file.clone(), active)]) {
                 Ok(verdict) => verdict,
-                Err(Error::Input(why)) => return Ok(Fate::Undecided(why)),
+                Err(why) if why.is_input() => return Ok(Fate::Undecided(why.to_string())),
                 Err(other) => return Err(other),
             };
             if verdict.reference.is_none() {
@@ -144,7 +145,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
                 ))
             })
         }
-        Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {
+        Err(e) if matches!(e.kind(), Input | Unfit | NotConverged) => {
             let said = e.to_string();
             if let wrong @ Fate::Wrong(_) = refused(&said, Path::new("soak_")) {
                 return Ok(wrong);
@@ -155,12 +156,12 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
                 return Ok(Fate::Undecided(format!("{said}; many rows")));
             }
             let reference = Reference::new(session, scene, &layout, Precision::Twice, None);
-            let loud = matches!(e, Error::NotConverged(_));
+            let loud = e.is_not_converged();
             Ok(match reference {
                 Ok(r) if r.found.converged && loud => Fate::NotConverged(said),
                 Ok(r) if r.found.converged => Fate::Wrong(format!("a solution was missed: {said}")),
                 Ok(_) => Fate::NoSolution(said),
-                Err(Error::Input(why)) => Fate::Undecided(format!("{said}; {why}")),
+                Err(why) if why.is_input() => Fate::Undecided(format!("{said}; {why}")),
                 Err(other) => return Err(other),
             })
         }

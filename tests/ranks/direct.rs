@@ -86,7 +86,7 @@ pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> base::R
     let solution = solver.solve()?;
     if !solution.converged() {
         let why = format!("{name}: {}", solution.status);
-        return Err(Error::NotConverged(why));
+        return Err(Error::not_converged(why));
     }
     let all = |values: Vec<u64>| gather_all(session.comm(), &values).concat();
     let dofs = solver.problem().local.iter().flat_map(|s| &s.dofs);

@@ -8,7 +8,7 @@ use crate::support::direct::with_options;
 use crate::support::mpi::as_rank;
 use crate::support::rng::Rng;
 use crate::support::sample::all_cases;
-use base::{Error, Result};
+use base::Result;
 use fetifeti::{FetiFeti, MethodSettings};
 use parallel::exchange::sum_all;
 use petsc::Session;
@@ -154,7 +154,7 @@ fn run(
     options.push(("ksp_rtol", RTOL));
     options.push(("ksp_max_it", "200"));
     let (ranks, rank) = (session.size(), session.rank());
-    let solved = with_options(session, &options, || {
+    let solved: base::Result<_> = with_options(session, &options, || {
         let mine = |s: usize| s % ranks == rank;
         let problem = scene.substructures(&mine)?;
         let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
@@ -181,7 +181,7 @@ fn run(
             }
         }
         Ok((status, _)) => End::Said(status.to_string()),
-        Err(Error::NotConverged(why)) => End::Said(why),
+        Err(error) if error.is_not_converged() => End::Said(error.to_string()),
         Err(other) => End::Wrong(other.to_string()),
     })
 }

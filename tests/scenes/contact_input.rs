@@ -1,6 +1,5 @@
 //! All mistakes in contacts, obstacles and load steps, and the one sentence for each.
 
-use base::Error;
 use scene::{ContactSpec, Extent, ObstacleSpec, Pair, Profile, Ramp, Scene, SceneSpec, StepsSpec};
 
 /// A body on five lines.
@@ -17,7 +16,7 @@ fn pair(more: &str) -> String {
 fn check(text: &str, expected: &str) {
     match Scene::parse("s.toml", text) {
         Ok(_) => panic!("accepted:\n{text}"),
-        Err(e @ Error::Input(_)) => {
+        Err(e) if e.is_input() => {
             assert_eq!(e.exit_code(), 2);
             assert_eq!(e.to_string(), expected);
         }
@@ -342,7 +341,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         adjust: 0.0,
         adjusted: Vec::new(),
         ramp: None,
-        written: String::new(),
+        location: base::Location::default(),
     });
     assert_eq!(
         error(contact),
@@ -362,7 +361,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         below: None,
         above: None,
         ramp: None,
-        written: String::new(),
+        location: base::Location::default(),
     });
     assert_eq!(
         error(obstacle),
@@ -389,7 +388,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
             gap: Ramp::parse("t").unwrap(),
             dirichlet: Ramp::constant(1.0),
             update: false,
-            written: String::new(),
+            location: base::Location::default(),
         });
         assert_eq!(error(steps), message);
     }

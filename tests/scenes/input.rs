@@ -1,7 +1,6 @@
 //! All mistakes in files, keys and values of scenes, and the one sentence for each.
 
 use crate::support::{rng, scene_message};
-use base::Error;
 use rng::Rng;
 use scene::Scene;
 use scene_message::{body, check, message, pair};
@@ -319,7 +318,8 @@ fn damaged_files_never_panic() {
             let damaged: String = damaged.into_iter().collect();
             match Scene::parse("damaged.toml", &damaged) {
                 Ok(_) => accepted += 1,
-                Err(Error::Input(message)) => {
+                Err(error) if error.is_input() => {
+                    let message = error.to_string();
                     assert!(message.starts_with("damaged.toml"), "{message}");
                     assert!(!message.contains('\n'), "{message}");
                     refused += 1;

@@ -11,6 +11,7 @@ mod contact_input;
 mod contact_solution;
 mod copies;
 mod counts;
+mod error_locations;
 mod examples;
 mod gallery;
 mod guided;

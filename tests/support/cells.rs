@@ -83,7 +83,7 @@ impl Grid {
     pub fn message(&self, rho: &str) -> String {
         let message = match self.scene(rho) {
             Ok(_) => panic!("accepted: {rho}"),
-            Err(Error::Input(message)) => message,
+            Err(error) if error.is_input() => error.to_string(),
             Err(other) => panic!("{other:?}"),
         };
         assert!(!message.contains('\n'), "{message}");

@@ -151,7 +151,7 @@ pub fn spec(seed: u64) -> SceneSpec {
             adjust: 0.0,
             adjusted: Vec::new(),
             ramp: None,
-            written: String::new(),
+            location: base::Location::default(),
         });
     }
     obstacles(rng, &mut spec, tame);
@@ -295,7 +295,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             extent,
             multipliers: None,
             adjust: 0.0,
-            written: String::new(),
+            location: base::Location::default(),
         });
     };
     let turned = !upwards && rng.one_in(2);
@@ -315,7 +315,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             adjust: 0.0,
             adjusted: Vec::new(),
             ramp: None,
-            written: String::new(),
+            location: base::Location::default(),
         });
     };
     match rng.below(12) {
@@ -375,7 +375,7 @@ fn obstacles(rng: &mut Rng, spec: &mut SceneSpec, tame: bool) {
             adjust: 0.0,
             gap: Profile::constant(0.0),
             ramp: None,
-            written: String::new(),
+            location: base::Location::default(),
         });
     }
 }

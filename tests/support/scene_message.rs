@@ -1,6 +1,5 @@
 //! The program's message for a wrong scene, and scenes for such tests.
 
-use base::Error;
 use scene::Scene;
 
 /// The message for the scene `text`.
@@ -8,7 +7,7 @@ pub fn message(text: &str) -> String {
     let result = Scene::parse("s.toml", text).and_then(|s| s.check_values());
     match result {
         Ok(()) => panic!("accepted:\n{text}"),
-        Err(e @ Error::Input(_)) => {
+        Err(e) if e.is_input() => {
             assert_eq!(e.exit_code(), 2);
             let message = e.to_string();
             assert!(!message.contains('\n'), "{message}");

@@ -3,8 +3,10 @@
 
 pub mod error;
 pub mod linalg;
+pub mod location;
 
-pub use error::{Error, Fault, Result};
+pub use error::{Error, ErrorKind, Fault, Result};
+pub use location::Location;
 
 // Helpers of tests name this crate as others do.
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use petsc::Session;
 use report::json::contact::OuterStep;
 use report::output;
@@ -28,7 +28,11 @@ impl Events {
         }
         let open = |path: &Path| {
             let file = File::options().append(true).create(true).open(path);
-            file.map_err(|e| Error::environment(format!("{}: {e}", path.display())))
+            file.map_err(|e| {
+                Error::environment("")
+                    .at(Location::file_named(path.display().to_string()))
+                    .because(e)
+            })
         };
         let file = path.filter(|_| session.rank() == 0).map(open);
         Ok(Events {
@@ -51,6 +55,10 @@ impl Events {
             file.write_all(line.as_bytes())
         };
         let written = self.file.as_ref().map_or(Ok(()), write);
-        session.agree(written.map_err(|e| Error::environment(format!("{}: {e}", path.display()))))
+        session.agree(written.map_err(|e| {
+            Error::environment("")
+                .at(Location::file_named(path.display().to_string()))
+                .because(e)
+        }))
     }
 }

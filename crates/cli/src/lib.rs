@@ -100,7 +100,8 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     }
     searches::show(session, command.quiet());
     let done = carry_out(session, command.clone(), petsc.clone());
-    if let (Ok(()) | Err(Error::NotConverged(_)), 0) = (&done, session.rank()) {
+    let came_to_an_end = done.as_ref().err().is_none_or(Error::is_not_converged);
+    if came_to_an_end && session.rank() == 0 {
         if let Some(warning) = unused::warning(session, &command, &petsc)? {
             eprintln!("{warning}");
         }

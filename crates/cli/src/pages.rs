@@ -52,6 +52,6 @@ pub fn manual(dir: Option<&Path>) -> Result<()> {
 fn roff(page: &Man) -> Result<String> {
     let mut text = Vec::new();
     page.render(&mut text)
-        .map_err(|e| Error::environment(format!("cannot write the manual: {e}")))?;
+        .map_err(|e| Error::environment("cannot write the manual").because(e))?;
     Ok(String::from_utf8_lossy(&text).into_owned())
 }

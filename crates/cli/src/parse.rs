@@ -29,13 +29,13 @@ pub struct Invocation {
 /// Reads the arguments (without the program's name).
 ///
 /// # Errors
-/// [`Error::Input`], one sentence.
+/// [`ErrorKind::Input`](base::ErrorKind::Input), one sentence.
 pub fn parse(args: Vec<String>) -> Result<Invocation> {
     let (ours, petsc) = split(args);
     check_options_files(&petsc)?;
     let set = std::env::var("PETSC_OPTIONS").unwrap_or_default();
     let words: Vec<String> = set.split_whitespace().map(String::from).collect();
-    check_options_files(&words).map_err(|e| Error::input(format!("PETSC_OPTIONS: {e}")))?;
+    check_options_files(&words).map_err(|e| Error::input("PETSC_OPTIONS").because(e))?;
     let words = std::iter::once("fetifeti".to_string()).chain(ours);
     let wanted = match Line::try_parse_from(words) {
         Ok(Line { command, .. }) => command.map_or_else(|| Wanted::Say(usage()), Wanted::Run),

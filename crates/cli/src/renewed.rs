@@ -143,14 +143,14 @@ impl<'a> Renewed<'a> {
 impl Renewed<'_> {
     /// An error of load step `step`, from 0: with renewed contacts it says which step that is.
     pub fn at_step(&self, step: usize, error: Error) -> Error {
-        match error {
-            Error::Input(what) if self.present.is_some() && step > 0 => Error::Input(format!(
-                "load step {}, with contacts between sides that face each other where the step before has left the \
-                 bodies: {what}",
-                step + 1
-            )),
-            other => other,
+        if self.present.is_none() || step == 0 || !error.is_input() {
+            return error;
         }
+        Error::input(format!(
+            "load step {}, with contacts between sides that face each other where the step before has left the bodies",
+            step + 1
+        ))
+        .because(error)
     }
 }
 

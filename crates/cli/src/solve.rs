@@ -214,7 +214,7 @@ fn solve(
 
 /// The error of a solve that stopped early; its results have been written before.
 pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
-    Error::NotConverged(format!(
+    Error::not_converged(format!(
         "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
     ))
 }

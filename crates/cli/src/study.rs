@@ -65,7 +65,7 @@ impl Task<'_> {
         })?;
         match report.cases.iter().find(|c| !c.holds()) {
             None => Ok(()),
-            Some(case) => Err(Error::NotConverged(format!(
+            Some(case) => Err(Error::not_converged(format!(
                 "hertz, {}: half-width and peak are not within 2 % of the theory \
                  on the finest mesh, or do not come nearer to it",
                 case.case
@@ -83,7 +83,7 @@ impl Task<'_> {
         if wrong.is_empty() {
             return Ok(());
         }
-        Err(Error::NotConverged(format!(
+        Err(Error::not_converged(format!(
             "hard-cases: wrong answers were called solutions: {}",
             wrong.join(", ")
         )))
@@ -113,7 +113,7 @@ impl Task<'_> {
         if names.is_empty() {
             return Ok(());
         }
-        Err(Error::NotConverged(format!(
+        Err(Error::not_converged(format!(
             "adaptive: a bound is missed in {}",
             names.join(", ")
         )))
@@ -148,7 +148,7 @@ impl Task<'_> {
         if missed.is_empty() {
             return Ok(());
         }
-        Err(Error::NotConverged(format!(
+        Err(Error::not_converged(format!(
             "benchmarks: tolerances are missed: {}",
             missed.join("; ")
         )))
@@ -205,7 +205,7 @@ impl Task<'_> {
         })?;
         match report.rows.iter().map(|r| r.unsolved().count()).sum() {
             0usize => Ok(()),
-            n => Err(Error::NotConverged(format!(
+            n => Err(Error::not_converged(format!(
                 "walls: number of scenes that were not solved: {n}"
             ))),
         }

@@ -118,7 +118,7 @@ impl Values {
     /// u, and in elasticity the stress, at the probes of a scene. On rank 0.
     ///
     /// # Errors
-    /// [`Error::Input`] for a probe that lies in no body.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a probe that lies in no body.
     pub fn probes(&self, scene: &Scene) -> Result<Vec<ProbeValue>> {
         scene
             .probes
@@ -185,11 +185,11 @@ impl Values {
             Some(name) => format!("not in body `{name}`"),
             None => "in no body".into(),
         };
-        Err(Error::Input(format!(
-            "{}the probe `{}` at {:?} is {place}",
-            probe.written,
+        Err(Error::input(format!(
+            "the probe `{}` at {:?} is {place}",
             probe.name,
             &probe.point[..scene.dim()]
-        )))
+        ))
+        .at(&probe.location))
     }
 }

@@ -272,7 +272,7 @@ fn decode(name: &str, bytes: &[u8]) -> Result<String> {
     if bytes.contains(&0) {
         let message =
             format!("{name} is no deck of Abaqus or CalculiX: it has bytes that no text has");
-        return Err(Error::Input(message));
+        return Err(Error::input(message));
     }
     Ok(match std::str::from_utf8(bytes) {
         Ok(text) => text.to_string(),

@@ -1,6 +1,6 @@
 //! Where something stands in the files of a deck, and what stood there and was not taken as it is.
 
-use base::Error;
+use base::{Error, Location};
 
 /// A line of a deck, or of a file that it includes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -29,12 +29,17 @@ pub struct Files(pub Vec<String>);
 impl Files {
     /// The place in words, such as "bracket.inp, line 12".
     pub fn at(&self, place: Place) -> String {
-        let name = self.0.get(place.file as usize).map_or("", String::as_str);
-        format!("{name}, line {}", place.line)
+        self.location(place).place().unwrap_or_default()
     }
 
-    /// The error that begins with the place.
+    /// The place as errors carry it.
+    pub fn location(&self, place: Place) -> Location {
+        let name = self.0.get(place.file as usize).map_or("", String::as_str);
+        Location::line_in_words(name, place.line as usize)
+    }
+
+    /// The error at this place.
     pub fn error(&self, place: Place, message: impl AsRef<str>) -> Error {
-        Error::Input(format!("{}: {}", self.at(place), message.as_ref()))
+        Error::input(message.as_ref()).at(self.location(place))
     }
 }

@@ -84,7 +84,7 @@ impl<F: Borrow<MeshFile>> Extractor<F> {
     /// groups become boundary groups. Lengths are multiplied by `scale`.
     ///
     /// # Errors
-    /// [`Error::Input`] where three cells share a side.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where three cells share a side.
     pub fn extract(&mut self, chosen: &[u32], scale: f64) -> Result<CellMesh> {
         let mut own = self.enter(chosen);
         own.sort_unstable();
@@ -153,7 +153,7 @@ impl<F: Borrow<MeshFile>> Extractor<F> {
                 .iter()
                 .map(|&(c, _)| cell_ids[c as usize].to_string())
                 .collect();
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{}: the cells {} share one side (two cells at most were expected)",
                 file.name,
                 names.join(", ")

@@ -1,19 +1,19 @@
 //! A mesh as a file has it: cells of every dimension, and named groups of cells, nodes or sides of cells.
 
 use super::cells::Cells;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use std::io::Read;
 use std::path::Path;
 
 /// The bytes of the file `path`, which has a `what`. A device or a pipe may have no end, and is refused.
 ///
 /// # Errors
-/// [`Error::Input`] with the path.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path.
 pub fn bytes(path: &Path, what: &str) -> Result<Vec<u8>> {
     let name = path.display();
-    let fail = |e| Error::Input(format!("{name}: the {what} cannot be read: {e}"));
+    let fail = |e| unreadable(path, what).because(e);
     if !std::fs::metadata(path).map_err(fail)?.is_file() {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{name} is no file, where one with a {what} was expected"
         )));
     }
@@ -26,26 +26,29 @@ const MOST: u64 = 1 << 28;
 /// The text of `path`, which has a `what`; it may be a pipe.
 ///
 /// # Errors
-/// [`Error::Input`] with the path; a text that is too long may have no end.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path; a text that is too long may have no end.
 pub fn text(path: &Path, what: &str) -> Result<String> {
-    let name = path.display();
-    let fail = |e: std::io::Error| Error::Input(format!("{name}: the {what} cannot be read: {e}"));
+    let fail = |e: std::io::Error| unreadable(path, what).because(e);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(fail)?;
     file.take(MOST + 1).read_to_end(&mut bytes).map_err(fail)?;
     if bytes.len() as u64 > MOST {
-        return Err(Error::Input(format!(
-            "{name}: the {what} has more than {} MB, or no end, where a {what} of less was expected",
+        return Err(Error::input(format!(
+            "the {what} has more than {} MB, or no end, where a {what} of less was expected",
             MOST >> 20
-        )));
+        ))
+        .at(Location::file_named(path.display().to_string())));
     }
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Error::Input(format!(
-            "{name}: the {what} cannot be read: byte {} is no text in UTF-8",
-            at + 1
-        ))
+        unreadable(path, what)
+            .retold(|so_far| format!("{so_far}: byte {} is no text in UTF-8", at + 1))
     })
+}
+
+fn unreadable(path: &Path, what: &str) -> Error {
+    Error::input(format!("the {what} cannot be read"))
+        .at(Location::file_named(path.display().to_string()))
 }
 
 /// Largest coordinate: volumes and their products must be numbers.

@@ -29,7 +29,9 @@ impl Team {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
-            .map_err(|e| Error::environment(format!("cannot start {threads} threads: {e}")))?;
+            .map_err(|e| {
+                Error::environment(format!("cannot start {threads} threads")).because(e)
+            })?;
         Ok(Team {
             pool: Some(pool),
             iterates: true,

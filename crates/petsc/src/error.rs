@@ -1,10 +1,10 @@
 //! Errors across the border between Rust and C, in both directions.
 //!
 //! From C: PETSc's error handler is replaced by one that collects the stack frames, and [`check`] turns an error code
-//! into [`Error::Petsc`] with this trace. To C: [`guard`] runs a callback, stores its error or panic in a slot of this
+//! into [`ErrorKind::Petsc`](base::ErrorKind::Petsc) with this trace. To C: [`guard`] runs a callback, stores its error or panic in a slot of this
 //! thread and returns an error code to PETSc. The outer call finds the slot filled and returns the stored error.
 
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 use petsc_sys as sys;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -39,21 +39,23 @@ pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
     }
     FAILED.set(true);
     let trace = TRACE.take();
-    Err(PENDING.take().unwrap_or(Error::Petsc { code, call, trace }))
+    Err(PENDING
+        .take()
+        .unwrap_or_else(|| Error::petsc(code, call, trace)))
 }
 
 /// The error for an option value that PETSc refused while it read the options with `prefix`: a user error in one
 /// sentence.
 pub(crate) fn refused_option(error: Error, prefix: &str) -> Error {
-    match error {
-        Error::Petsc { trace, .. } if !trace.is_empty() => {
+    match error.trace().first() {
+        Some(message) => {
             // PETSc ends some messages with a list or a hint of several lines.
-            let reason = trace[0].lines().next().unwrap_or_default();
-            Error::Input(format!(
+            let reason = message.lines().next().unwrap_or_default();
+            Error::input(format!(
                 "An option -{prefix}... has no valid value: {reason}"
             ))
         }
-        other => other,
+        None => error,
     }
 }
 
@@ -74,8 +76,8 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
         Ok(Err(error)) => error,
         Err(payload) => panicked(what, payload.as_ref()),
     };
-    let code = match &error {
-        Error::Petsc { code, .. } => *code,
+    let code = match error.kind() {
+        ErrorKind::Petsc(code) => code,
         _ => sys::PETSC_ERR_LIB,
     };
     let message = c_string(&error.to_string());
@@ -109,7 +111,7 @@ pub(crate) fn panicked(what: &str, payload: &(dyn Any + Send)) -> Error {
         .map(|s| s.to_string())
         .or_else(|| payload.downcast_ref::<String>().cloned())
         .unwrap_or_else(|| "no message".into());
-    Error::Environment(format!("Internal error: {what} panicked: {text}"))
+    Error::environment(format!("Internal error: {what} panicked: {text}"))
 }
 
 /// A C string; a NUL inside the text ends it, which only shortens a message or a name.

@@ -188,7 +188,7 @@ impl Ksp {
     /// Reads the options of this solver and its preconditioner.
     ///
     /// # Errors
-    /// [`Error::Input`] for a value that PETSc refuses.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value that PETSc refuses.
     pub fn set_from_options(&self) -> Result<()> {
         petsc!(KSPSetFromOptions(self.raw())).map_err(|e| {
             let prefix = text(|prefix| petsc!(PetscObjectGetOptionsPrefix(self.object(), prefix)));

@@ -95,7 +95,7 @@ impl Mat {
         o_nnz: &[i32],
     ) -> Result<Mat> {
         if d_nnz.len() != rows || (comm == Comm::World && o_nnz.len() != rows) {
-            return Err(Error::Environment(format!(
+            return Err(Error::environment(format!(
                 "Internal error: a matrix with {rows} rows was given {} and {} row lengths.",
                 d_nnz.len(),
                 o_nnz.len()
@@ -119,7 +119,7 @@ impl Mat {
     /// Adds a dense block (by rows) at these global rows and columns; [`Mat::assemble`] must follow.
     pub fn add_values(&self, rows: &[i32], cols: &[i32], block: &[f64]) -> Result<()> {
         if rows.len() * cols.len() != block.len() {
-            return Err(Error::Environment(format!(
+            return Err(Error::environment(format!(
                 "Internal error: a {} × {} block came with {} values.",
                 rows.len(),
                 cols.len(),
@@ -268,7 +268,7 @@ impl Mat {
 /// A count or index as a 32-bit PETSc integer.
 pub(super) fn count(n: usize) -> Result<i32> {
     i32::try_from(n).map_err(|_| {
-        Error::Input(format!(
+        Error::input(format!(
             "A matrix of {n} rows or columns exceeds what PETSc with 32-bit indices can number."
         ))
     })

@@ -88,7 +88,7 @@ impl Options {
     /// A real number.
     ///
     /// # Errors
-    /// [`Error::Input`] where the text is no finite number; likewise below.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where the text is no finite number; likewise below.
     pub fn get_f64(&self, name: &str) -> Result<Option<f64>> {
         let value: Option<f64> = self.parse(name, "a number")?;
         match value {
@@ -343,7 +343,7 @@ impl Options {
     }
 
     fn wrong(&self, name: &str, found: &str, expected: &str) -> Error {
-        Error::Input(format!(
+        Error::input(format!(
             "Option {} is \"{found}\"; expected {expected}.",
             self.full_name(name)
         ))

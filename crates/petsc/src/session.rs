@@ -63,10 +63,10 @@ impl Session {
     /// name.
     ///
     /// PETSc reads its options from `args`, PETSC_OPTIONS, `-options_file` and .petscrc; `help` is printed first under
-    /// `-help`. PETSc's printed stacks are replaced by [`Error::Petsc`], its signal handler is left out.
+    /// `-help`. PETSc's printed stacks are replaced by [`ErrorKind::Petsc`](base::ErrorKind::Petsc), its signal handler is left out.
     ///
     /// # Errors
-    /// [`Error::Environment`] when PETSc is already initialised or finalised, is another version than the one compiled
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is already initialised or finalised, is another version than the one compiled
     /// against, or refuses to start.
     pub fn new(args: &[String], help: &str) -> Result<Session> {
         check_version()?;
@@ -109,12 +109,10 @@ impl Session {
             help as usize,
         ]);
         if let Err(error) = petsc!(PetscInitialize(argc, argv, null(), help)) {
-            let why = match error {
-                Error::Petsc { trace, .. } if !trace.is_empty() => trace[0].clone(),
-                other => other.to_string(),
-            };
+            let why = error.trace().first().cloned();
+            let why = why.unwrap_or_else(|| error.to_string());
             settled();
-            let error = Error::Environment(format!("PETSc does not start: {why}."));
+            let error = Error::environment(format!("PETSc does not start: {why}."));
             end_mpi(&error);
             return Err(error);
         }
@@ -127,7 +125,7 @@ impl Session {
     /// the end and its error handler stays the host's.
     ///
     /// # Errors
-    /// [`Error::Environment`] when PETSc is not initialised or is another version than the one compiled against.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is not initialised or is another version than the one compiled against.
     ///
     /// # Safety
     /// `comm` is a valid communicator, and neither it nor PETSc ends before the session and all objects made with it.

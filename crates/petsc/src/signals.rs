@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::Session;
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 use petsc_sys as sys;
 
 thread_local! {
@@ -65,23 +65,20 @@ impl Drop for Heeded {
 /// An error on all ranks if one of them has got a signal; nothing unless signals are [`Heeded`]. Collective.
 ///
 /// # Errors
-/// [`Error::Environment`] with the name of the signal.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the name of the signal.
 pub fn heed(session: &Session) -> Result<()> {
     if !HEEDED.get() {
         return Ok(());
     }
     session.agree(match noted() {
         None => Ok(()),
-        Some(signal) => Err(Error::Environment(format!("{ENDED}{signal}"))),
+        Some(signal) => Err(Error::new(ErrorKind::Ended, format!("ended by {signal}"))),
     })
 }
 
-/// The beginning of what [`heed`] says.
-const ENDED: &str = "ended by ";
-
 /// Whether an error is that of [`heed`].
 pub fn is_end(error: &Error) -> bool {
-    matches!(error, Error::Environment(what) if what.starts_with(ENDED))
+    error.kind() == ErrorKind::Ended
 }
 
 /// Asks a process to end, by SIGTERM.

@@ -121,7 +121,7 @@ fn subspace(which: Which) -> usize {
 /// ([`End::settled`]).
 ///
 /// # Errors
-/// [`Error::NotConverged`] when an end of the spectrum did not converge; [`Error::Input`] when A annihilates `start`.
+/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) when an end of the spectrum did not converge; [`ErrorKind::Input`](base::ErrorKind::Input) when A annihilates `start`.
 pub fn extreme_eigenvalues(
     session: &Session,
     a: &Mat,
@@ -198,7 +198,7 @@ pub fn extreme_eigenvalues(
         };
         match eps.solve_settled(when, which)? {
             Some(end) => Ok(end),
-            None => Err(Error::NotConverged(format!(
+            None => Err(Error::not_converged(format!(
                 "The {} eigenvalue did not converge to {tol:.0e} in {} restarts ({}); \
                  -{prefix}eps_max_it allows more of them",
                 if which == Which::SmallestReal {

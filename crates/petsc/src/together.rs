@@ -1,8 +1,7 @@
 //! Errors that ranks have in common: a failure of one rank becomes an error of all, not a hang.
 
 use super::error::settled;
-use base::Fault;
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use std::ffi::{c_int, c_void};
@@ -21,7 +20,9 @@ pub(super) fn agree<T>(comm: &SimpleCommunicator, result: Result<T>) -> Result<T
         return result;
     }
     let mut packed = match &result {
-        Err(error) if first == mine => pack(error),
+        Err(error) if first == mine => {
+            postcard::to_allocvec(error).expect("an error is plain data")
+        }
         _ => Vec::new(),
     };
     let root = comm.process_at_rank(first);
@@ -31,7 +32,7 @@ pub(super) fn agree<T>(comm: &SimpleCommunicator, result: Result<T>) -> Result<T
     root.broadcast_into(&mut packed[..]);
     match result {
         Err(error) if first == mine => Err(error),
-        _ => Err(unpack(&packed)),
+        _ => Err(relayed(&packed)),
     }
 }
 
@@ -84,29 +85,13 @@ pub(super) fn first_failure(comm: &SimpleCommunicator, failed: bool) -> Option<u
     }
 }
 
-/// An error as bytes: a letter for its kind, then the text.
-fn pack(error: &Error) -> Vec<u8> {
-    let kind = match error {
-        Error::Input(_) => 'i',
-        // A code is below 128.
-        Error::Argument(fault, _) => char::from(*fault as u8),
-        Error::Unfit(_) => 'u',
-        Error::NotConverged(_) => 'n',
-        Error::Environment(_) | Error::Petsc { .. } => 'e',
-    };
-    format!("{kind}{error}").into_bytes()
-}
-
-fn unpack(bytes: &[u8]) -> Error {
-    let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
-    match bytes.first() {
-        Some(b'i') => Error::Input(text),
-        Some(b'u') => Error::Unfit(text),
-        Some(b'n') => Error::NotConverged(text),
-        Some(&code) => match Fault::ALL.into_iter().find(|f| *f as u8 == code) {
-            Some(fault) => Error::Argument(fault, text),
-            None => Error::Environment(text),
-        },
-        None => Error::Environment(text),
+/// The error that the bytes of another rank hold. PETSc has reported its errors on that rank alone.
+fn relayed(bytes: &[u8]) -> Error {
+    match postcard::from_bytes::<Error>(bytes) {
+        Ok(error) if matches!(error.kind(), ErrorKind::Petsc(_)) => {
+            Error::environment(error.to_string())
+        }
+        Ok(error) => error,
+        Err(e) => Error::environment("another rank has failed with an unreadable error").because(e),
     }
 }

@@ -275,14 +275,14 @@ fn binary(vec: &Vec, path: &Path, mode: sys::PetscFileMode) -> Result<Handle<sys
 
 fn count(n: usize) -> Result<i32> {
     i32::try_from(n).map_err(|_| {
-        Error::Input(format!(
+        Error::input(format!(
             "A vector of {n} entries exceeds what PETSc with 32-bit indices can number."
         ))
     })
 }
 
 fn lent_out(what: &str) -> Error {
-    Error::Environment(format!(
+    Error::environment(format!(
         "Internal error: a vector was to be {what} while its entries are lent out."
     ))
 }

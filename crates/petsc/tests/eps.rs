@@ -266,7 +266,7 @@ fn a_start_in_the_kernel_is_refused() {
         start.set(1.0).unwrap();
         let accuracy = (1e-10, None);
         let error = extreme_eigenvalues(session, &a, &a, None, &start, accuracy, "").unwrap_err();
-        assert!(matches!(error, base::Error::Input(_)), "{error}");
+        assert!(error.is_input(), "{error}");
     });
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// directly.
 ///
 /// # Errors
-/// [`Error::Environment`], one sentence with the path, when writing fails; the old file is then untouched.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment), one sentence with the path, when writing fails; the old file is then untouched.
 pub fn write_file(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
@@ -33,7 +33,7 @@ fn replace(
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
     let refused =
-        |e: std::io::Error| Error::Environment(format!("cannot write {}: {e}", shown(path)));
+        |e: std::io::Error| Error::environment(format!("cannot write {}", shown(path))).because(e);
     if is_stdout(path) {
         let mut out = BufWriter::new(std::io::stdout().lock());
         return fill(&mut out).and_then(|()| out.flush()).map_err(refused);
@@ -42,7 +42,7 @@ fn replace(
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if let Ok(there) = fs::metadata(&target) {
         if there.is_dir() {
-            return Err(Error::Environment(format!(
+            return Err(Error::environment(format!(
                 "cannot write {}: it is a directory, expected a file",
                 shown(path)
             )));
@@ -88,7 +88,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
 /// Prints text on standard output. Unlike `print!` it does not panic where the output is a full disk or a closed pipe.
 ///
 /// # Errors
-/// [`Error::Environment`].
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment).
 pub fn print(text: &str) -> Result<()> {
     write_text(Path::new("-"), text)
 }
@@ -97,16 +97,13 @@ pub fn print(text: &str) -> Result<()> {
 /// It is called before a long computation, so that the results do not get lost at the end.
 ///
 /// # Errors
-/// [`Error::Environment`] with the path.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
 pub fn prepare_directory(path: &Path) -> Result<()> {
     let refused = |e: std::io::Error| {
-        Error::Environment(format!(
-            "cannot write into the directory {}: {e}",
-            shown(path)
-        ))
+        Error::environment(format!("cannot write into the directory {}", shown(path))).because(e)
     };
     if fs::metadata(path).is_ok_and(|there| !there.is_dir()) {
-        return Err(Error::Environment(format!(
+        return Err(Error::environment(format!(
             "cannot write into the directory {}: it is a file, expected a directory",
             shown(path)
         )));
@@ -120,14 +117,14 @@ pub fn prepare_directory(path: &Path) -> Result<()> {
 /// As [`prepare_directory`], for the directory of a result file; for the path `-` it does nothing.
 ///
 /// # Errors
-/// [`Error::Environment`] with the path.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
 pub fn prepare_file(path: &Path) -> Result<()> {
     if is_stdout(path) {
         return Ok(());
     }
     match fs::metadata(path) {
         Ok(there) if there.is_dir() => {
-            return Err(Error::Environment(format!(
+            return Err(Error::environment(format!(
                 "cannot write {}: it is a directory, expected a file",
                 shown(path)
             )))

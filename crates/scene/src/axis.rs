@@ -2,7 +2,7 @@
 
 use super::body::bounds_of;
 use super::model::body::BodySpec;
-use base::{Error, Result};
+use base::Result;
 use elements::form::Form;
 use mesh::Mesh;
 
@@ -13,15 +13,12 @@ const ON_AXIS: f64 = 1e-9;
 /// forms.
 ///
 /// # Errors
-/// [`Error::Input`] for a node to the left of the axis, and for solids and boxes with cells of their own.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a node to the left of the axis, and for solids and boxes with cells of their own.
 pub(super) fn hold(body: &mut BodySpec, form: &Form) -> Result<()> {
     if !form.is_axial() {
         return Ok(());
     }
-    let error = |message: String| {
-        let (written, name) = (&body.written, &body.name);
-        Err(Error::Input(format!("{written}body `{name}`: {message}")))
-    };
+    let error = |message: String| body.error(message);
     if body.mesh.dim() != 2 {
         return error("a solid, where a plane section of an axisymmetric body was expected".into());
     }

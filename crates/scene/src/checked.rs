@@ -108,7 +108,7 @@ impl Scene {
     /// Reads and checks the scene in the file `path`; of a deck (`.inp`) the last step.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) with file, line and what was expected.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
         Scene::load_if(path.as_ref(), false, |_| Ok(Part::WHOLE))
     }
@@ -142,7 +142,7 @@ impl Scene {
     /// Checks a scene that a program has built.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) for overlapping bodies, non-matching nodes on tied faces, values out of
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for overlapping bodies, non-matching nodes on tied faces, values out of
     /// range, ….
     pub fn new(spec: SceneSpec) -> Result<Scene> {
         Scene::part(spec, Part::WHOLE)
@@ -270,7 +270,7 @@ impl Scene {
     /// The experiment of Table 1 of \[Lee\]; see [`lee`].
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) when a count is zero, or when no node lies in the middle third of any
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when a count is zero, or when no node lies in the middle third of any
     /// face.
     pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> Result<Scene> {
         Scene::new(lee(bodies, subdomains, elements, faces))

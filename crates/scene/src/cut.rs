@@ -4,7 +4,7 @@ use super::model::body::{BodySpec, Cut};
 use super::model::map::Map;
 use crate::assembly::slack::{self, Motion};
 use base::linalg::sorted::distinct;
-use base::{Error, Result};
+use base::Result;
 use elements::cell::{Element, Material};
 use elements::element::{self, Doubt, Integration};
 use elements::form::Form;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// the subdomains of both are alike.
 ///
 /// # Errors
-/// [`Error::Input`] for cells that are inverted or degenerate, or that the form has no element for.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for cells that are inverted or degenerate, or that the form has no element for.
 pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;
@@ -58,20 +58,19 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     let name = &body.name;
     match check(mesh, form, &body.integration) {
         Err(message) => {
-            let written = &body.written;
-            return Err(Error::Input(format!("{written}body `{name}`: {message}")));
+            return body.error(message);
         }
         Ok(doubts) => {
             let about = |doubt| format!("body `{name}`: {doubt}");
             before.warnings.extend(doubts.map(about));
         }
     }
-    let (written, mut mesh) = (mesh.clone(), mesh.clone());
+    let (whole_mesh, mut mesh) = (mesh.clone(), mesh.clone());
     if n > 0 {
         before.cut(&mut mesh, n);
     }
     if whole {
-        before.copies.insert(key, (written, mesh.clone()));
+        before.copies.insert(key, (whole_mesh, mesh.clone()));
     }
     body.mesh = Mesh::Cells(mesh);
     Ok(())

@@ -46,7 +46,7 @@ fn given(session: &Session, path: &Path, read: Result<Scene>) -> Result<Scene> {
 /// and the nodes of meshes are compared. Collective.
 ///
 /// # Errors
-/// [`Error::Environment`] with the ranks that differ from rank 0.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the ranks that differ from rank 0.
 pub fn same_on_all_ranks(session: &Session, path: &Path, scene: &Scene) -> Result<()> {
     if session.size() == 1 {
         return Ok(());
@@ -71,7 +71,7 @@ pub fn same_on_all_ranks(session: &Session, path: &Path, scene: &Scene) -> Resul
     if differ.is_empty() {
         return Ok(());
     }
-    Err(Error::Environment(format!(
+    Err(Error::environment(format!(
         "{}: rank {} has read another file than rank 0, expected the same files on all machines",
         path.display(),
         differ.join(", ")
@@ -160,7 +160,7 @@ pub fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> 
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .map_err(|e| Error::environment(format!("cannot start threads: {e}")))?;
+        .map_err(|e| Error::environment("cannot start threads").because(e))?;
     let built = pool.install(|| scene.substructures(&owns));
     session.agree(built.and_then(|built| measurable(&scene.title, built)))
 }
@@ -177,7 +177,7 @@ fn measurable(title: &str, built: Substructures) -> Result<Substructures> {
         if sizes.iter().all(|s| s.abs() < LARGEST_SQUARED) {
             continue;
         }
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{title}: in a subdomain of body `{}` nodal forces are up to {force:.1e} and stiffnesses from {low:.1e} to \
              {high:.1e}, whose squares are no numbers (take other units, for `load`, `size`, `rho` or `young`)",
             built.body_names[sub.body]

@@ -28,7 +28,7 @@ enum Until {
 /// Reads the scene, unless what assembles it would not fit into the memory.
 ///
 /// # Errors
-/// Those of [`Scene::load`]; [`Error::Environment`] with the estimate, the memory that there is, and what to change.
+/// Those of [`Scene::load`]; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the estimate, the memory that there is, and what to change.
 pub fn load(session: &Session, path: &Path) -> Result<Scene> {
     load_part(session, path, |_| Ok(Part::WHOLE))
 }
@@ -68,13 +68,13 @@ pub fn lee(session: &Session, row: [usize; 3], faces: Faces) -> Result<Scene> {
     let [bodies, subdomains, elements] = row;
     let name = format!("--rows {bodies},{subdomains},{elements}");
     if bodies.saturating_mul(bodies) > MOST_BODIES {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{name}: {bodies} × {bodies} bodies where at most {MOST_BODIES} were expected"
         )));
     }
     let in_a_row = subdomains.saturating_mul(elements);
     if in_a_row > MOST_IN_A_ROW {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{name}: {in_a_row} elements along a side of a body where at most {MOST_IN_A_ROW} were expected"
         )));
     }
@@ -173,7 +173,7 @@ fn check(
     } else {
         "fewer elements or subdomains"
     };
-    Err(Error::Environment(format!(
+    Err(Error::environment(format!(
         "{name}: {what} would take about {}{on_each}, for {} elements in {} subdomains, where {} {} are left; \
          take {change}, ranks on more machines, or another limit (-fetifeti_memory_limit MB)",
         size(bytes),

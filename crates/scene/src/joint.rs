@@ -18,7 +18,7 @@ impl Scene {
     /// Subdomains are assembled in the caller's rayon pool.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
         let matrices = Matrices::default();
@@ -52,7 +52,7 @@ impl Scene {
     /// Subdomain `mesh.index` on its mesh, for callers that keep the mesh.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) for a load that is not finite.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
         self.assemble_with(mesh, &Matrices::default())
     }

@@ -15,7 +15,7 @@ impl Scene {
     /// The mesh of subdomain `index`: nodes, which of them are free, values given at the last load step, ρ by element.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) for ρ ≤ 0 or not finite, with body and point.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for ρ ≤ 0 or not finite, with body and point.
     pub fn subdomain_mesh(&self, index: usize) -> Result<SubdomainMesh> {
         self.mesh_with(index, Factors::last(&self.steps))
     }

@@ -52,7 +52,7 @@ impl Renewal {
     /// The data from which the contacts of a scene are renewed; `spec` has bodies and sides in place of surfaces.
     ///
     /// # Errors
-    /// [`Error::Input`] for contacts that cannot be renewed.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for contacts that cannot be renewed.
     pub fn new(
         written: SceneSpec,
         spec: &SceneSpec,
@@ -173,18 +173,13 @@ fn is_of_common_face(contact: &ContactSpec) -> bool {
 
 /// Refuses what has no meaning once bodies have moved.
 fn check(spec: &SceneSpec) -> Result<()> {
-    let steps = spec.steps.as_ref().map_or("", |s| s.written.as_str());
+    let steps = spec.steps.as_ref().map(|s| &s.location);
     if !spec.form.is_elastic() {
-        return Err(Error::Input(format!(
-            "{steps}`update` in [steps] of a scalar scene, in which nothing moves (elasticity was expected)"
-        )));
+        return Err(Error::input("`update` in [steps] of a scalar scene, in which nothing moves (elasticity was expected)").at(steps));
     }
     match spec.contacts.iter().find(|c| is_of_common_face(c)) {
-        Some(contact) => Err(Error::Input(format!(
-            "{}a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the common \
-             face changes when bodies slide (`sides` were expected: places are then those along a side)",
-            contact.written
-        ))),
+        Some(contact) => Err(Error::input("a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the common \
+             face changes when bodies slide (`sides` were expected: places are then those along a side)").at(&contact.location)),
         None => Ok(()),
     }
 }
@@ -193,7 +188,7 @@ impl Renewal {
     /// The contacts and obstacles of bodies that have moved, and the rows of load step `step`.
     ///
     /// # Errors
-    /// [`Error::Input`] where given values contradict an inequality.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where given values contradict an inequality.
     pub fn on(
         &self,
         bodies: &mut [Body],

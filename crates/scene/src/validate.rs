@@ -23,7 +23,7 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
         return Err(Error::input("the scene has no bodies"));
     }
     if spec.bodies.len() > MOST_BODIES {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "the scene has {} bodies where at most {MOST_BODIES} were expected",
             spec.bodies.len()
         )));
@@ -39,10 +39,11 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
             ));
         }
         if body.name.contains(char::is_control) {
-            let (written, name) = (&body.written, &body.name);
-            return Err(Error::Input(format!(
-                "{written}body {name:?}: a control character in its name, expected letters, digits and signs"
-            )));
+            return Err(Error::input(format!(
+                "body {:?}: a control character in its name, expected letters, digits and signs",
+                body.name
+            ))
+            .at(&body.location));
         }
         check_mesh(body)?;
         check_values(body, &spec.form)?;
@@ -64,8 +65,8 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
 impl BodySpec {
     /// The error `message` about this body.
     pub(super) fn error<T>(&self, message: impl std::fmt::Display) -> Result<T> {
-        let (written, name) = (&self.written, &self.name);
-        Err(Error::Input(format!("{written}body `{name}`: {message}")))
+        let message = format!("body `{}`: {message}", self.name);
+        Err(Error::input(message).at(self.location.with_body(&self.name)))
     }
 }
 

@@ -228,7 +228,8 @@ impl Sharing {
                     problem.body_names[body(&copies[0]) as usize],
                     c.subdomain,
                     problem.body_names[body(c) as usize],
-                )));
+                ))
+                .at(problem.location(&[body(&copies[0]), body(c)])));
             }
             if copies.windows(2).any(|w| w[0].subdomain == w[1].subdomain) {
                 return Err(Error::input(format!(

@@ -163,7 +163,7 @@ fn solved_to_the_end(ksp: &Ksp) -> Result<()> {
     if reason.code >= 0 {
         return Ok(());
     }
-    Err(Error::NotConverged(format!(
+    Err(Error::not_converged(format!(
         "the primal problem of the bodies was not solved ({}): leave the -fetifeti_coarse_ options \
          at their defaults, or take a solver for symmetric matrices that are close to singular, \
          such as -fetifeti_coarse_ksp_type cg -fetifeti_coarse_pc_type jacobi",

@@ -11,7 +11,7 @@ use petsc::Session;
 /// Refuses vertices whose rows of S_Π are zero, by the place of the first. Collective.
 ///
 /// # Errors
-/// [`Error::Unfit`](base::Error::Unfit), on all ranks.
+/// [`ErrorKind::Unfit`](base::ErrorKind::Unfit), on all ranks.
 pub fn check(
     session: &Session,
     problem: &Substructures,

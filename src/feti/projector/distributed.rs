@@ -227,7 +227,7 @@ impl Distributed {
             (None, _) => return self.ksp.solve(&self.rhs, &self.solution),
         };
         if reason.code < 0 {
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "the natural coarse problem was not solved to {EXACT:.0e} ({}): change the -fetifeti_gtg_ options",
                 reason.name
             )));

@@ -319,7 +319,7 @@ impl Scaled {
         }
         let reason = self.ksp.converged_reason()?;
         if reason.code < 0 {
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
                 reason.name
             )));

@@ -28,7 +28,8 @@ impl NaturalCoarse {
                 return Err(Error::input(format!(
                     "{who} held by nothing{way} (no Dirichlet side and no tie to a held body) \
                      and the load does not balance, expected a Dirichlet side or a tie{weak}"
-                )));
+                ))
+                .at(problem.location(&moved(&self.columns, motion))));
             }
         }
         Ok(())
@@ -78,7 +79,7 @@ pub fn weakness(problem: &Substructures, columns: &KernelColumns, motion: &Motio
 }
 
 /// The bodies that a combination of kernel vectors moves.
-fn moved(columns: &KernelColumns, motion: &Motion) -> Vec<u32> {
+pub fn moved(columns: &KernelColumns, motion: &Motion) -> Vec<u32> {
     let largest = motion.largest();
     let moved = motion.0.iter().filter(|e| e.1.abs() > 1e-8 * largest);
     distinct(moved.map(|e| columns.body(e.0)))

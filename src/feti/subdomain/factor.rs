@@ -221,17 +221,19 @@ fn slack(sub: &Subdomain, interface: [&[u32]; 2]) -> Option<u32> {
 pub(crate) fn no_stiffness(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
     let place = sub.coordinates.as_ref().map(|c| c[dof as usize]);
     let place = place.map_or(String::new(), |[x, y, z]| format!(", at ({x}, {y}, {z})"));
-    Error::Unfit(format!(
+    Error::unfit(format!(
         "the matrix of subdomain {} in body \"{}\" has a row of zeros on its interface (at local dof {dof}{place}), \
          expected a stiffness matrix that holds it",
         sub.index, problem.body_names[sub.body]
     ))
+    .at(problem.location(&[sub.body as u32]))
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
-    Error::Unfit(format!(
+    Error::unfit(format!(
         "the matrix of subdomain {} in body \"{}\" is not positive semidefinite \
          (at local dof {dof}), expected a stiffness matrix",
         sub.index, problem.body_names[sub.body]
     ))
+    .at(problem.location(&[sub.body as u32]))
 }

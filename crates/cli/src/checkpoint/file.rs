@@ -12,7 +12,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::Checkpoint;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use report::output;
 
 const MAGIC: &[u8] = b"fetifeti checkpoint\n";
@@ -25,7 +25,7 @@ const TAIL: usize = 8;
 /// Writes the file, atomically. To be called on one rank.
 ///
 /// # Errors
-/// [`Error::Environment`] with the path; the old file is then untouched.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path; the old file is then untouched.
 pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
     output::write_durably(path, &to_bytes(checkpoint))
 }
@@ -33,11 +33,15 @@ pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
 /// Reads a file. To be called on one rank.
 ///
 /// # Errors
-/// [`Error::Input`] with the path, what was found and what was expected, for anything but a whole checkpoint of this
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path, what was found and what was expected, for anything but a whole checkpoint of this
 /// version.
 pub fn read(path: &Path) -> Result<Checkpoint> {
     let name = path.display();
-    let refused = |e| Error::input(format!("{name}: the checkpoint cannot be read: {e}"));
+    let refused = |e| {
+        Error::input("the checkpoint cannot be read")
+            .at(Location::file_named(name.to_string()))
+            .because(e)
+    };
     let mut file = File::open(path).map_err(refused)?;
     let mut bytes = Vec::new();
     let mut start = (&mut file).take(MAGIC.len() as u64);
@@ -67,10 +71,14 @@ fn hash_from(start: u64, bytes: &[u8]) -> u64 {
 /// [`hash`] of the content of a file, which may be large.
 ///
 /// # Errors
-/// [`Error::Input`] with the path, if the file cannot be read.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path, if the file cannot be read.
 pub(super) fn hash_of(path: &Path) -> Result<u64> {
     let name = path.display();
-    let refused = |e| Error::input(format!("{name}: the file cannot be read: {e}"));
+    let refused = |e| {
+        Error::input("the file cannot be read")
+            .at(Location::file_named(name.to_string()))
+            .because(e)
+    };
     let mut file = File::open(path).map_err(refused)?;
     let (mut out, mut part) = (START, vec![0; 1 << 16]);
     loop {

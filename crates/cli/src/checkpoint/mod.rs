@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use fetifeti::contact::State;
 use fetifeti::FetiFeti;
 use petsc::Session;
@@ -168,7 +168,9 @@ impl Checkpoints {
             )));
         }
         let text = std::fs::read_to_string(path).map_err(|e| {
-            Error::input(format!("{}: the scene cannot be read: {e}", path.display()))
+            Error::input("the scene cannot be read")
+                .at(Location::file_named(path.display().to_string()))
+                .because(e)
         })?;
         self.scene = identity(&text, scene)?;
         if let Some(file) = &self.file {
@@ -248,10 +250,9 @@ impl Attached {
             return Ok(Resumed::default());
         };
         let records = serde_json::from_str(&before.records).map_err(|e| {
-            Error::input(format!(
-                "{}: the records of the checkpoint cannot be read: {e}",
-                file.display()
-            ))
+            Error::input("the records of the checkpoint cannot be read")
+                .at(Location::file_named(file.display().to_string()))
+                .because(e)
         });
         Ok(Resumed {
             load_step: before.load_step,
@@ -271,12 +272,12 @@ impl Attached {
         }
         what += match (&self.asked.file, load_step + steps) {
             (Some(file), 1..) => {
-                return Error::Environment(format!("{what}, --resume {} goes on", file.display()))
+                return Error::environment(format!("{what}, --resume {} goes on", file.display()))
             }
             (_, 0) => "",
             (None, _) => " (--checkpoint FILE would have kept them)",
         };
-        Error::Environment(what)
+        Error::environment(what)
     }
 
     /// Notes that the solver has new rows, made for these displacements. Collective.
@@ -291,7 +292,7 @@ impl Attached {
     /// Between two load steps the state is the beginning of the next one. Collective.
     ///
     /// # Errors
-    /// [`Error::Environment`] when the disk refuses; the old file is then untouched.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when the disk refuses; the old file is then untouched.
     pub fn save(
         &self,
         session: &Session,
@@ -303,8 +304,11 @@ impl Attached {
             return Ok(());
         };
         let write = |state| {
-            let records = serde_json::to_string(&records())
-                .map_err(|e| Error::environment(format!("{}: {e}", file.display())))?;
+            let records = serde_json::to_string(&records()).map_err(|e| {
+                Error::environment("")
+                    .at(Location::file_named(file.display().to_string()))
+                    .because(e)
+            })?;
             let content = Checkpoint {
                 title: self.asked.title.clone(),
                 scene: self.asked.scene,

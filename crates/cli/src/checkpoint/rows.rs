@@ -153,7 +153,7 @@ impl Layout {
     /// This rank's part of the state that rank 0 has read from `file`. Collective.
     ///
     /// # Errors
-    /// [`Error::Input`] that names the file if its rows are not those of this run.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) that names the file if its rows are not those of this run.
     pub fn scatter(
         &self,
         session: &Session,

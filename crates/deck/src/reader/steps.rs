@@ -186,7 +186,7 @@ impl<'a> Reader<'a> {
             return Err(self.files.error(place, message));
         }
         let name = &self.files.0[0];
-        let fail = |message: String| Err(base::Error::Input(format!("{name}: {message}")));
+        let fail = |message: String| Err(base::Error::input(format!("{name}: {message}")));
         if self.deck.mesh.cells.is_empty() {
             return fail("the deck has no elements".to_string());
         }

@@ -53,7 +53,7 @@ impl<'a> Reference<'a> {
     /// whether there is a solution. Collective.
     ///
     /// # Errors
-    /// [`Error::Input`] where the inequalities have no frames; those of the scene, and PETSc's.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where the inequalities have no frames; those of the scene, and PETSc's.
     pub fn new(
         session: &Session,
         scene: &Scene,
@@ -117,7 +117,7 @@ impl<'a> Reference<'a> {
     /// Collective.
     ///
     /// # Errors
-    /// As [`Reference::new`]; [`Error::NotConverged`] where no solution satisfies the conditions, such as where nothing
+    /// As [`Reference::new`]; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where no solution satisfies the conditions, such as where nothing
     /// holds a body.
     pub fn certified(
         session: &Session,
@@ -128,7 +128,7 @@ impl<'a> Reference<'a> {
         let found = &out.found;
         if !found.converged {
             let c = found.certificate;
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "the direct solution ends with {}, a correction of {:.1e}, a violation of {:.1e} and a pull of {:.1e}",
                 found.reason, c.correction, c.feasibility, c.pull
             )));

@@ -22,7 +22,7 @@ impl Workspace {
     /// Makes the directory.
     ///
     /// # Errors
-    /// [`Error::Environment`] with the path.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
     pub fn new() -> Result<Workspace> {
         use std::os::unix::fs::DirBuilderExt;
         let stamp = std::time::SystemTime::now()
@@ -34,7 +34,8 @@ impl Workspace {
             .mode(0o700)
             .create(&dir)
             .map_err(|e| {
-                Error::environment(format!("cannot make the directory {}: {e}", dir.display()))
+                Error::environment(format!("cannot make the directory {}", dir.display()))
+                    .because(e)
             })?;
         Ok(Workspace { dir })
     }
@@ -82,9 +83,9 @@ impl Failure {
     /// This failure as an error of this process, of the kind that the exit code names.
     pub fn into_error(self) -> Error {
         match self.code {
-            Some(1) => Error::NotConverged(self.message),
-            Some(2) => Error::Input(self.message),
-            _ => Error::Environment(self.message),
+            Some(1) => Error::not_converged(self.message),
+            Some(2) => Error::input(self.message),
+            _ => Error::environment(self.message),
         }
     }
 }
@@ -102,7 +103,7 @@ impl Launcher {
     /// the job leaves is the file beside it that ends in `json`.
     ///
     /// # Errors
-    /// [`Error::Environment`] where the job cannot be started at all: no disk, no mpirun; or where its record cannot be
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) where the job cannot be started at all: no disk, no mpirun; or where its record cannot be
     /// read.
     pub fn run<T: DeserializeOwned>(
         &self,
@@ -117,8 +118,9 @@ impl Launcher {
         let _ = std::fs::remove_file(asked(job));
         json::write(job, task)?;
         let create = |path: &Path| {
-            File::create(path)
-                .map_err(|e| Error::environment(format!("cannot write {}: {e}", path.display())))
+            File::create(path).map_err(|e| {
+                Error::environment(format!("cannot write {}", path.display())).because(e)
+            })
         };
         let mut command = Command::new("mpirun");
         command
@@ -136,9 +138,7 @@ impl Launcher {
         let _signals = Signals::watch();
         interrupted()?;
         let mut child = command.spawn().map_err(|e| {
-            Error::environment(format!(
-                "cannot start mpirun, which runs on several ranks need: {e}"
-            ))
+            Error::environment("cannot start mpirun, which runs on several ranks need").because(e)
         })?;
         let clock = Instant::now();
         // mpirun ends itself after the limit; if it hangs, it is killed from here.
@@ -226,13 +226,13 @@ fn end(child: &mut Child) -> Result<ExitStatus> {
 }
 
 fn lost(e: std::io::Error) -> Error {
-    Error::environment(format!("mpirun is lost: {e}"))
+    Error::environment("mpirun is lost").because(e)
 }
 
 /// An error if a signal has come that asks this process to end.
 ///
 /// # Errors
-/// [`Error::Environment`] with the name of the signal.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the name of the signal.
 pub fn interrupted() -> Result<()> {
     match Signals::noted() {
         None => Ok(()),
@@ -245,14 +245,14 @@ pub fn interrupted() -> Result<()> {
 /// Reads a record that a process has left.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
     serde_json::from_str(text)
-        .map_err(|e| Error::environment(format!("a process has left an unreadable result: {e}")))
+        .map_err(|e| Error::environment("a process has left an unreadable result").because(e))
 }
 
 /// Reads the task in `file` in a process that the program has started; `what` names the expected task. On all ranks.
 /// Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for a file that is no such task.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a file that is no such task.
 pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> Result<T> {
     let read = || -> std::result::Result<T, String> {
         let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
@@ -267,7 +267,7 @@ pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> 
 /// Writes the record of the job in `file` on rank 0, and the options that it has asked for. Collective.
 ///
 /// # Errors
-/// [`Error::Environment`] with the path.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
 pub fn leave<T: Serialize>(session: &Session, file: &Path, found: &T) -> Result<()> {
     let write = || {
         let all = Options::new(session, "");
@@ -322,10 +322,10 @@ fn spoken(stderr: &str) -> Option<String> {
 /// The path of this program's executable.
 ///
 /// # Errors
-/// [`Error::Environment`] where the system does not know it.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) where the system does not know it.
 pub fn own() -> Result<PathBuf> {
     let own = std::env::current_exe();
-    own.map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))
+    own.map_err(|e| Error::environment("the program's own path is unknown").because(e))
 }
 
 /// Removes environment variables that this process has inherited from an mpirun around it; they would mislead another

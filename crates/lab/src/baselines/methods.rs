@@ -305,7 +305,7 @@ pub fn stopped<'a>(mut runs: impl Iterator<Item = (&'a MethodRun, String)>) -> R
     let early = |run: &MethodRun| run.is_ours() && !run.converged_reason.starts_with("CONVERGED");
     match runs.find(|(run, _)| early(run)) {
         None => Ok(()),
-        Some((run, scene)) => Err(Error::NotConverged(format!(
+        Some((run, scene)) => Err(Error::not_converged(format!(
             "fetifeti on {scene}: {}",
             run.message.as_deref().unwrap_or(&run.converged_reason)
         ))),

@@ -91,7 +91,7 @@ impl Plan {
     /// The plan according to the options.
     ///
     /// # Errors
-    /// [`Error::Input`] for a value out of range, and for a scene whose load steps renew its contacts.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose load steps renew its contacts.
     pub fn new(
         session: &Session,
         scene: &Scene,

@@ -12,7 +12,7 @@ use base::Result;
 /// `active`. The inner `Err` is one sentence.
 ///
 /// # Errors
-/// [`Error::Environment`] without mpirun or disk.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) without mpirun or disk.
 pub fn baseline(
     name: &str,
     scene: &Path,

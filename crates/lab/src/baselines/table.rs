@@ -244,7 +244,7 @@ pub const BASELINES: [Baseline; 5] = [
 /// The baselines that `--with` names, in the order of the table; all of them for an empty list.
 ///
 /// # Errors
-/// [`Error::Input`] for a name that is not in the table.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a name that is not in the table.
 pub fn select(names: &[String]) -> Result<Vec<&'static Baseline>> {
     for name in names {
         if Baseline::named(name).is_none() {

@@ -112,7 +112,7 @@ pub struct KappaReport {
 /// Runs the study; `exact` asks for the exact spectra, too (minutes on large grids). Collective.
 ///
 /// # Errors
-/// Those of the method; [`Error::NotConverged`] where CG did not end.
+/// Those of the method; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where CG did not end.
 pub fn run(
     session: &Session,
     quick: bool,
@@ -164,7 +164,7 @@ pub fn grid(
         let solver = FetiFeti::new(session, problem.clone(), settings)?;
         let solution = solver.solve()?;
         if !solution.converged() {
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "kappa, {}, H_b/H_s = {subdomains}, H_s/h = {elements}: {}",
                 family.name, solution.status
             )));

@@ -19,7 +19,7 @@ use petsc::Session;
 /// Refuses to run the study `name` on several ranks; `why` says why it needs a single one.
 ///
 /// # Errors
-/// [`Error::Input`].
+/// [`ErrorKind::Input`](base::ErrorKind::Input).
 fn alone(session: &Session, name: &str, why: &str) -> Result<()> {
     match session.size() {
         1 => Ok(()),

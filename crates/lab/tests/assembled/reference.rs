@@ -85,7 +85,7 @@ fn what_nothing_holds_has_no_solution_and_springs_hold() {
             let found = Reference::certified(session, &scene, &layout);
             found.map(|r| r.found.active.iter().filter(|on| **on).count())
         };
-        assert!(matches!(ends("load = 1"), Err(Error::NotConverged(_))));
+        assert!(ends("load = 1").is_err_and(|e| e.is_not_converged()));
         assert_eq!(ends("load = 1\nspring = { top = 1e-8 }").ok(), Some(0));
         let alone = |load: &str| {
             let body = "[[body]]\nname = \"one\"\norigin = [0, 0]\nsize = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n";
@@ -94,7 +94,7 @@ fn what_nothing_holds_has_no_solution_and_springs_hold() {
             let layout = Layout::new(&scene);
             Reference::certified(session, &scene, &layout).map(|_| ())
         };
-        assert!(matches!(alone("x"), Err(Error::NotConverged(_))));
+        assert!(alone("x").is_err_and(|e| e.is_not_converged()));
         assert!(alone("x - 0.5").is_ok());
     });
 }

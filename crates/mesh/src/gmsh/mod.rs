@@ -31,7 +31,7 @@ pub use write::write;
 /// Reads the file `path`.
 ///
 /// # Errors
-/// [`Error::Input`](base::Error::Input) with file, line or byte, what was found and what was expected.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with file, line or byte, what was found and what was expected.
 pub fn load(path: impl AsRef<Path>) -> Result<MeshFile> {
     let path = path.as_ref();
     read(&path.display().to_string(), &bytes(path, "mesh")?)

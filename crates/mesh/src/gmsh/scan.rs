@@ -2,7 +2,7 @@
 
 use crate::file::FARTHEST;
 use crate::Digits;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 
 /// How numbers stand in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,24 +64,33 @@ impl<'a> Scan<'a> {
 
     /// An error at a place: the message begins with the file and the line, or the byte in a binary file.
     pub fn fail(&self, at: usize, message: impl std::fmt::Display) -> Error {
-        Error::Input(format!("{}, {}: {message}", self.name, self.place(at)))
+        Error::input(message.to_string()).at(self.location(at))
     }
 
     /// An error of the file as a whole.
     pub fn fail_whole(&self, message: impl std::fmt::Display) -> Error {
-        Error::Input(format!("{}: {message}", self.name))
+        Error::input(message.to_string()).at(Location::file_named(self.name))
+    }
+
+    /// A place as errors carry it.
+    pub fn location(&self, at: usize) -> Location {
+        match self.encoding {
+            Encoding::Text => Location::line_in_words(self.name, self.line_number(at)),
+            _ => Location::byte(self.name, at),
+        }
     }
 
     /// A place in words.
     pub fn place(&self, at: usize) -> String {
-        let before = &self.bytes[..at.min(self.bytes.len())];
         match self.encoding {
-            Encoding::Text => {
-                let lines = before.iter().filter(|&&b| b == b'\n').count();
-                format!("line {}", lines + 1)
-            }
+            Encoding::Text => format!("line {}", self.line_number(at)),
             _ => format!("byte {at}"),
         }
+    }
+
+    fn line_number(&self, at: usize) -> usize {
+        let before = &self.bytes[..at.min(self.bytes.len())];
+        1 + before.iter().filter(|&&b| b == b'\n').count()
     }
 
     /// All bytes of the file.

@@ -66,7 +66,7 @@ pub(super) fn replaced(text: &str, old: &str, new: &str) -> Result<MeshFile> {
 fn refused(text: &str, old: &str, new: &str) -> String {
     match replaced(text, old, new) {
         Ok(_) => panic!("{new:?} for {old:?} was read"),
-        Err(Error::Input(message)) => message,
+        Err(error) if error.is_input() => error.to_string(),
         Err(other) => panic!("{other:?}"),
     }
 }

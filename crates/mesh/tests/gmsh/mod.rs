@@ -3,7 +3,6 @@
 use super::*;
 use crate::Members;
 use ::elements::kind::CellKind;
-use base::Error;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 

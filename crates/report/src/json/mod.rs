@@ -35,7 +35,7 @@ use std::path::Path;
 /// Serialises any record as indented JSON to a file, or to standard output for the path `-`.
 ///
 /// # Errors
-/// [`Error::Environment`] with the path when it cannot be written.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path when it cannot be written.
 pub fn write<T: Serialize>(path: &Path, record: &T) -> Result<()> {
     let mut text = to_string(record)?;
     text.push('\n');
@@ -45,8 +45,8 @@ pub fn write<T: Serialize>(path: &Path, record: &T) -> Result<()> {
 /// Indented JSON of any record.
 ///
 /// # Errors
-/// [`Error::Environment`] when the record has no JSON form (a map whose keys are not strings).
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) when the record has no JSON form (a map whose keys are not strings).
 pub fn to_string<T: Serialize>(record: &T) -> Result<String> {
     serde_json::to_string_pretty(record)
-        .map_err(|e| Error::Environment(format!("cannot write a result as JSON: {e}")))
+        .map_err(|e| Error::environment("cannot write a result as JSON").because(e))
 }

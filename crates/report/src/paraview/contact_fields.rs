@@ -75,7 +75,7 @@ impl ContactFields {
     /// Adds one candidate at one point. A point where several interfaces meet has several candidates.
     ///
     /// # Errors
-    /// [`Error::Input`] when the mesh has no such point or a number is not finite.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the mesh has no such point or a number is not finite.
     pub fn add(&mut self, point: usize, multiplier: f64, gap: f64, closed: bool) -> Result<()> {
         if point >= self.multiplier.len() {
             return Err(Error::input(format!(
@@ -100,7 +100,7 @@ impl ContactFields {
     /// Adds the area of a candidate to a point; the candidate must have been added before.
     ///
     /// # Errors
-    /// [`Error::Input`] when the mesh has no such point or the area is negative or not finite.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the mesh has no such point or the area is negative or not finite.
     pub fn add_area(&mut self, point: usize, area: f64) -> Result<()> {
         let n = self.multiplier.len();
         if point >= n || !(area >= 0.0 && area.is_finite()) {

@@ -131,7 +131,7 @@ impl<'a> Vtu<'a> {
     /// Writes the file.
     ///
     /// # Errors
-    /// [`Error::Input`] when an array does not fit the grid; [`Error::Environment`] with the path.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when an array does not fit the grid; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
     pub fn write(&self, path: &Path) -> Result<()> {
         self.check()?;
         output::write_file(path, |out| self.fill(out))
@@ -218,7 +218,7 @@ impl<'a> Vtu<'a> {
     /// Writes the file that names the pieces of a grid; this grid is one of them, and all have its arrays.
     ///
     /// # Errors
-    /// [`Error::Environment`] with the path.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
     pub fn write_index(&self, path: &Path, pieces: &[String]) -> Result<()> {
         output::write_file(path, |out| self.fill_index(out, pieces))
     }

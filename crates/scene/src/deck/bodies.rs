@@ -47,7 +47,7 @@ pub(super) fn of(
         at.iter().for_each(|at| pressures[at.body].push(pressure));
     }
     for (b, mesh) in meshes.iter().enumerate() {
-        let mesh = mesh.clone().map_err(Error::Input)?;
+        let mesh = mesh.clone().map_err(Error::input)?;
         let part = &numbers.parts[b];
         let mut body = body(deck, b, part, mesh, (step, &pressures[b]))?;
         if in_full {
@@ -313,7 +313,7 @@ fn supports(
                 value: support.value,
                 resolution: 0.0,
                 support: true,
-                written: format!("{}: ", deck.files.at(support.place)),
+                location: deck.files.location(support.place),
             }),
         }
     }

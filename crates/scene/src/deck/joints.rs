@@ -4,7 +4,7 @@ use super::bodies::along_coordinates;
 use super::numbers::Numbers;
 use crate::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 use crate::model::profile::Profile;
-use base::Result;
+use base::{Location, Result};
 use deck::{Adjust, ContactPair, Deck, Overclosure, SurfaceName, Tie};
 use fetifeti::substructures::BodyNode;
 use mesh::Members;
@@ -52,13 +52,13 @@ fn surfaces(deck: &Deck, slave: &SurfaceName, master: &SurfaceName) -> Pair {
 
 /// The ties, among them the contact pairs that tie.
 pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
-    let tie = |pair: Pair, tolerance: Option<f64>, written: String| TieSpec {
+    let tie = |pair: Pair, tolerance: Option<f64>, location: Location| TieSpec {
         pair,
         sides: None,
         extent: tolerance.map_or(Extent::All, singly),
         multipliers: None,
         adjust: tolerance.unwrap_or(0.0),
-        written,
+        location,
     };
     let ties = deck.ties.iter();
     let of_tie = |t: &Tie| {
@@ -114,7 +114,7 @@ pub(super) fn contacts(
             },
             adjusted,
             ramp: None,
-            written: at(deck, pair.place),
+            location: at(deck, pair.place),
         });
     }
     Ok(out)
@@ -170,12 +170,12 @@ pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSp
             value: 0.0,
             resolution: deck.factor_resolution,
             support: false,
-            written: at(deck, equation.place),
+            location: at(deck, equation.place),
         });
     }
     Ok(out)
 }
 
-fn at(deck: &Deck, place: deck::Place) -> String {
-    format!("{}: ", deck.files.at(place))
+fn at(deck: &Deck, place: deck::Place) -> Location {
+    deck.files.location(place)
 }

@@ -52,7 +52,7 @@ impl DeckScenes {
     /// Reads the deck in the file `path`.
     ///
     /// # Errors
-    /// [`Error::Input`] with file, line and what was expected.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) with file, line and what was expected.
     pub fn load(path: &Path) -> Result<DeckScenes> {
         let read = |file: &Path| bytes(file, "deck");
         let directory = path.parent().unwrap_or(Path::new(""));
@@ -65,10 +65,10 @@ impl DeckScenes {
     /// The scenes of a deck.
     ///
     /// # Errors
-    /// [`Error::Input`] for one without a step.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for one without a step.
     pub fn of(mut deck: Deck) -> Result<DeckScenes> {
         if deck.steps.is_empty() {
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{}: the deck has no *STEP (one at least was expected)",
                 deck.mesh.name
             )));
@@ -131,7 +131,7 @@ impl DeckScenes {
     /// The scene of step `step`.
     ///
     /// # Errors
-    /// [`Error::Input`] for what a scene refuses, such as sides that do not match.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for what a scene refuses, such as sides that do not match.
     pub fn scene(&self, title: &str, step: usize) -> Result<Scene> {
         let deck = &self.deck;
         let plane = match deck.model() {
@@ -140,7 +140,7 @@ impl DeckScenes {
             Model::Axisymmetric => Plane::Axial,
         };
         if let Some(k) = deck.elements.iter().position(|e| e.model() != deck.model()) {
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{}: element {} is a {} where {:?} was expected, as before: the kinds are not mixed",
                 deck.mesh.name,
                 deck.mesh.cell_ids[k],

@@ -67,13 +67,13 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
         let ranges: Vec<String> = (0..dim)
             .map(|d| format!("[{}, {}]", low[d], high[d]))
             .collect();
-        return Err(Error::Input(format!(
-            "{}bodies `{}` and `{}` overlap in {} (bodies may only touch)",
-            bodies[b].spec.written,
+        return Err(Error::input(format!(
+            "bodies `{}` and `{}` overlap in {} (bodies may only touch)",
             bodies[a].spec.name,
             bodies[b].spec.name,
-            ranges.join(" × "),
-        )));
+            ranges.join(" × ")
+        ))
+        .at(&bodies[b].spec.location));
     }
     let lines = [0, 1, 2].map(|d| {
         if stretches[d] {

@@ -10,6 +10,7 @@ use super::field::Field;
 use super::map::Map;
 use super::motion::Motion;
 use super::ramp::Ramp;
+use base::Location;
 use elements::element::Integration;
 use elements::q1::Quadrature;
 pub use mesh::SIDES;
@@ -124,8 +125,8 @@ pub struct BodySpec {
     pub place: [usize; 3],
     /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
     pub moved: Option<Arc<FxHashMap<usize, [f64; 3]>>>,
-    /// Where it was written ("scene.toml:12: "), or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
     /// Copies share it until one of them changes it.
     kind: Arc<BodyKind>,
 }
@@ -184,7 +185,7 @@ impl BodySpec {
             frame: None,
             place: [0; 3],
             moved: None,
-            written: String::new(),
+            location: Location::default(),
             kind: Arc::new(BodyKind {
                 order: 1,
                 cut: Cut::AsItIs,

@@ -4,6 +4,7 @@ use super::profile::Profile;
 use super::ramp::Ramp;
 use super::rigid::Rigid;
 use super::rigid_surface::RigidSurface;
+use base::Location;
 use fetifeti::substructures::BodyNode;
 
 /// The pairs of bodies to which an entry applies.
@@ -54,8 +55,8 @@ pub struct TieSpec {
     pub multipliers: Option<usize>,
     /// Initial gaps and overclosures up to this length count as touching; ties close them all.
     pub adjust: f64,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }
 
 /// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the
@@ -82,8 +83,8 @@ pub struct ContactSpec {
     pub adjusted: Vec<BodyNode>,
     /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }
 
 /// Rigid obstacles beside a body: below ≤ u ≤ above on (part of) its sides.
@@ -113,8 +114,8 @@ pub struct ObstacleSpec {
     pub adjust: f64,
     /// Factor of the bounds, of the gap and of the motion over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }
 
 /// Contacts between all sides that are near each other and have opposite normals.
@@ -124,8 +125,8 @@ pub struct AutoContact {
     pub distance: Option<f64>,
     /// Initial gaps and overclosures up to this length count as touching.
     pub adjust: f64,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }
 
 /// An equation Σ factor · u = value.
@@ -139,6 +140,6 @@ pub struct EquationSpec {
     pub resolution: f64,
     /// Whether it is a given displacement along an oblique axis: its forces are reactions.
     pub support: bool,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }

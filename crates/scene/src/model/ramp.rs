@@ -1,6 +1,7 @@
 //! Load steps as written: the times, and factors as functions of them.
 
 use super::expr::{Expr, Variables};
+use base::Location;
 use std::fmt;
 
 /// A factor as a function of the time t of a load step.
@@ -50,6 +51,6 @@ pub struct StepsSpec {
     pub dirichlet: Ramp,
     /// Whether each load step renews normals, pairing and gaps of contacts where the last one left the bodies.
     pub update: bool,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }

@@ -25,7 +25,7 @@ impl RigidSurface {
     /// normals around.
     ///
     /// # Errors
-    /// [`Error::Input`] where there is no such group, where it has no faces, and where the normals of two neighbours
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where there is no such group, where it has no faces, and where the normals of two neighbours
     /// point to different sides.
     pub fn of_file(
         file: &MeshFile,
@@ -55,7 +55,7 @@ impl RigidSurface {
         });
         let faces = faces.collect();
         if let Some(x) = points.iter().find(|x| dim == 2 && x[2] != 0.0) {
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "the surface `{name}` of {} has a node at z = {} where 0 was expected in a plane scene",
                 file.name, x[2]
             )));
@@ -145,13 +145,13 @@ fn faces(file: &MeshFile, dim: usize, name: &str) -> Result<Vec<FileFace>> {
             } else {
                 format!("groups of {wanted} are {}", names.join(", "))
             };
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{} has no group `{name}` ({list})",
                 file.name
             )));
         }
     };
-    Err(Error::Input(format!(
+    Err(Error::input(format!(
         "the group `{name}` of {} {kind} where {wanted} were expected: {what} is a part of a rigid surface",
         file.name
     )))
@@ -160,7 +160,7 @@ fn faces(file: &MeshFile, dim: usize, name: &str) -> Result<Vec<FileFace>> {
 /// An error where two faces that share an edge (in the plane a node) have normals to different sides.
 fn check_normals(file: &MeshFile, name: &str, faces: &[FileFace]) -> Result<()> {
     let fail = |a: u64, b: u64| {
-        Err(Error::Input(format!(
+        Err(Error::input(format!(
             "the normals of the neighbours {a} and {b} of the surface `{name}` of {} point to different sides (one \
              side was expected, that which is free)",
             file.name

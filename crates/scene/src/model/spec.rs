@@ -7,6 +7,7 @@ use super::field::{Field, Region};
 use super::grid::GridSpec;
 use super::joints::{AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec};
 use super::ramp::StepsSpec;
+use base::Location;
 use elements::form::Form;
 use elements::q1::Quadrature;
 
@@ -19,8 +20,8 @@ pub struct ProbeSpec {
     pub body: Option<String>,
     /// The point.
     pub point: [f64; 3],
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
 }
 
 /// The joint of touching bodies that no entry mentions.
@@ -139,7 +140,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
                 extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
                 multipliers: None,
                 adjust: 0.0,
-                written: String::new(),
+                location: Location::default(),
             });
         }
     }

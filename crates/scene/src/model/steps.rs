@@ -29,21 +29,22 @@ impl Steps {
 
     /// The steps of `spec`. Every factor is evaluated at every time.
     pub(crate) fn new(spec: &SceneSpec) -> Result<Option<Steps>> {
-        let bodies = spec.bodies.iter().map(|b| (&b.ramp, &b.written));
-        let contacts = spec.contacts.iter().map(|c| (&c.ramp, &c.written));
-        let obstacles = spec.obstacles.iter().map(|o| (&o.ramp, &o.written));
+        let bodies = spec.bodies.iter().map(|b| (&b.ramp, &b.location));
+        let contacts = spec.contacts.iter().map(|c| (&c.ramp, &c.location));
+        let obstacles = spec.obstacles.iter().map(|o| (&o.ramp, &o.location));
         let entries = contacts.chain(obstacles);
         let ramps = bodies.chain(entries.clone());
         let Some(steps) = &spec.steps else {
             let ramped = ramps.clone().find(|(ramp, _)| ramp.is_some());
             return match ramped {
                 None => Ok(None),
-                Some((_, written)) => Err(Error::Input(format!(
-                    "{written}a `ramp` in a scene without load steps ([steps] was expected)"
-                ))),
+                Some((_, location)) => {
+                    let what = "a `ramp` in a scene without load steps ([steps] was expected)";
+                    Err(Error::input(what).at(location.with_key("ramp")))
+                }
             };
         };
-        let fail = |message: String| Err(Error::Input(format!("{}{message}", steps.written)));
+        let fail = |message: String| Err(Error::input(format!("{message}")).at(&steps.location));
         if steps.times.is_empty() {
             return fail("no times in [steps] where at least one was expected".into());
         }
@@ -63,16 +64,17 @@ impl Steps {
             ("gap", &steps.gap),
             ("dirichlet", &steps.dirichlet),
         ]
-        .map(|(key, ramp)| (key, ramp, &steps.written));
-        let ramped = ramps.filter_map(|(ramp, written)| Some(("ramp", ramp.as_ref()?, written)));
-        for (key, ramp, written) in own.into_iter().chain(ramped) {
+        .map(|(key, ramp)| (key, ramp, &steps.location));
+        let ramped = ramps.filter_map(|(ramp, location)| Some(("ramp", ramp.as_ref()?, location)));
+        for (key, ramp, location) in own.into_iter().chain(ramped) {
             for &t in &steps.times {
                 let value = ramp.at(t);
                 if !value.is_finite() {
-                    return Err(Error::Input(format!(
-                        "{written}the factor `{key}` = \"{ramp}\" is {value} at t = {t} \
+                    return Err(Error::input(format!(
+                        "the factor `{key}` = \"{ramp}\" is {value} at t = {t} \
                          where a finite number was expected"
-                    )));
+                    ))
+                    .at(location.with_key(key)));
                 }
             }
         }
@@ -123,7 +125,7 @@ impl<'a> Factors<'a> {
     pub fn of(steps: &'a Option<Steps>, step: usize) -> Result<Factors<'a>> {
         let every = steps.as_ref().map_or(1, |s| s.times.len());
         if step >= every {
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "load step {step} of a scene with {every} (a number below that was expected)"
             )));
         }

@@ -3,8 +3,9 @@
 //! This is a thin layer over the parser, not derived deserialisation: every message must name the line, the value found
 //! there and the value expected, also where a key takes a number, a list or a table.
 
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use std::fmt::Display;
+use std::rc::Rc;
 use toml::de::{DeTable, DeValue};
 
 /// A value with its place.
@@ -14,6 +15,8 @@ pub(super) struct Item<'a> {
     pub file: &'a str,
     /// Its line, from 1. The header of [[x]] has none of its own: the line of the first key is the nearest.
     line: usize,
+    /// The key whose value it is, or that of the list in which it stands.
+    key: Option<Rc<str>>,
     pub value: Value<'a>,
 }
 
@@ -45,14 +48,18 @@ impl Value<'_> {
 }
 
 impl<'a> Item<'a> {
-    /// The place where it was written, as messages begin with it.
-    pub fn written(&self) -> String {
-        written(self.file, self.line)
+    /// Where it was written.
+    pub fn location(&self) -> Location {
+        let location = Location::line(self.file, self.line);
+        match &self.key {
+            Some(key) => location.with_key(key.as_ref()),
+            None => location,
+        }
     }
 
     /// The error `message` at this place.
     pub fn error<T>(&self, message: impl Display) -> Result<T> {
-        Err(Error::Input(format!("{}{message}", self.written())))
+        Err(Error::input(message.to_string()).at(self.location()))
     }
 
     /// The error that this value is not what was `wanted`.
@@ -118,23 +125,20 @@ impl<'a> Item<'a> {
     }
 }
 
-fn written(file: &str, line: usize) -> String {
-    format!("{file}:{line}: ")
-}
-
 /// The text of a scene file as a table; `file` names it in messages.
 pub(super) fn parse<'a>(file: &'a str, text: &str) -> Result<Item<'a>> {
     let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
     let ends = ends.map(|(place, _)| place).collect();
     let source = Source { file, ends };
     let table = DeTable::parse(text).map_err(|e| {
-        let place = written(file, e.span().map_or(1, |span| source.line(span.start)));
+        let line = e.span().map_or(1, |span| source.line(span.start));
         let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-        Error::Input(format!("{place}not valid TOML: {message}"))
+        Error::input(format!("not valid TOML: {message}")).at(Location::line(file, line))
     })?;
     Ok(Item {
         file,
         line: 1,
+        key: None,
         value: source.table(table.get_ref())?,
     })
 }
@@ -154,20 +158,20 @@ impl<'a> Source<'a> {
         let mut entries = Vec::with_capacity(table.len());
         for (key, value) in table.iter() {
             let line = self.line(key.span().start);
-            entries.push((key.get_ref().to_string(), line, self.item(value)?));
+            let name = key.get_ref().to_string();
+            let value = self.item(value, &Rc::from(name.as_str()))?;
+            entries.push((name, line, value));
         }
         // The order of the file: the first mistake is then reported first.
         entries.sort_by_key(|(_, line, _)| *line);
         Ok(Value::Table(entries))
     }
 
-    fn item(&self, value: &toml::Spanned<DeValue<'_>>) -> Result<Item<'a>> {
+    fn item(&self, value: &toml::Spanned<DeValue<'_>>, key: &Rc<str>) -> Result<Item<'a>> {
         let line = self.line(value.span().start);
         let fail = |what: &str| {
-            let place = written(self.file, line);
-            Err(Error::Input(format!(
-                "{place}{what} where a finite number was expected"
-            )))
+            let place = Location::line(self.file, line).with_key(key.as_ref());
+            Err(Error::input(format!("{what} where a finite number was expected")).at(place))
         };
         let value = match value.get_ref() {
             DeValue::String(text) => Value::Text(text.to_string()),
@@ -181,13 +185,20 @@ impl<'a> Source<'a> {
             },
             DeValue::Boolean(v) => Value::Truth(*v),
             DeValue::Datetime(_) => Value::Date,
-            DeValue::Array(items) => {
-                Value::List(items.iter().map(|i| self.item(i)).collect::<Result<_>>()?)
-            }
+            DeValue::Array(items) => Value::List(
+                items
+                    .iter()
+                    .map(|i| self.item(i, key))
+                    .collect::<Result<_>>()?,
+            ),
             DeValue::Table(table) => self.table(table)?,
         };
-        let file = self.file;
-        Ok(Item { file, line, value })
+        Ok(Item {
+            file: self.file,
+            line,
+            key: Some(key.clone()),
+            value,
+        })
     }
 }
 
@@ -248,10 +259,10 @@ impl<'a> Section<'a> {
     pub fn need(&mut self, key: &'static str, expected: &str) -> Result<&'a Item<'a>> {
         match self.take(key) {
             Some(item) => Ok(item),
-            None => self.item.error(format!(
-                "{} has no `{key}` ({expected} was expected)",
-                self.what
-            )),
+            None => {
+                let message = format!("{} has no `{key}` ({expected} was expected)", self.what);
+                Err(Error::input(message).at(self.item.location().with_key(key)))
+            }
         }
     }
 
@@ -260,12 +271,12 @@ impl<'a> Section<'a> {
         let unknown = |entry: &&(String, usize, Item)| !self.known.contains(&entry.0.as_str());
         match self.entries.iter().find(unknown) {
             None => Ok(()),
-            Some((key, line, _)) => Err(Error::Input(format!(
-                "{}unknown key `{key}` in {} (known keys are {})",
-                written(self.item.file, *line),
+            Some((key, line, _)) => Err(Error::input(format!(
+                "unknown key `{key}` in {} (known keys are {})",
                 self.what,
                 self.known.join(", ")
-            ))),
+            ))
+            .at(Location::line(self.item.file, *line).with_key(key))),
         }
     }
 }

@@ -100,7 +100,7 @@ impl Reader {
                 known.insert(entries.clone(), changed);
             }
             let mut copy = known[&entries].placed(name, &placement.motion);
-            copy.written = placement.written.clone();
+            copy.location = placement.location.clone();
             out.push(copy);
         }
         match used.iter().position(|used| !used) {

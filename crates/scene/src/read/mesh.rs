@@ -10,7 +10,7 @@ use super::Reader;
 use crate::model::body::{BodySpec, Cut};
 use crate::model::rigid_surface::RigidSurface;
 use crate::quantity::unfit_size;
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 use mesh::{bytes, defects, gmsh, of_both_sides, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -175,9 +175,9 @@ pub(super) fn load_beside(file: &Item) -> Result<MeshFile> {
     let path = PathBuf::from(file.text("the name of a file")?);
     let directory = Path::new(file.file).parent();
     let path = directory.map_or(path.clone(), |directory| directory.join(path));
-    load(&path).or_else(|e| match e {
-        Error::Input(message) => file.error(message),
-        other => Err(other),
+    load(&path).map_err(|error| match error.kind() {
+        ErrorKind::Input => error.within(file.location()),
+        _ => error,
     })
 }
 
@@ -193,7 +193,7 @@ pub(crate) fn load(path: &Path) -> Result<MeshFile> {
             let directory = path.parent().unwrap_or(Path::new(""));
             deck::read_mesh(&name, &read(path)?, &|file| read(&directory.join(file)))
         }
-        _ => Err(Error::Input(format!(
+        _ => Err(Error::input(format!(
             "{name}: a mesh of Gmsh (.msh) or of Abaqus or CalculiX (.inp) was expected (meshio converts many others)"
         ))),
     }
@@ -226,7 +226,7 @@ impl Reader {
         let mut common = BodySpec::new(name.clone(), shape.mesh);
         self.material_and_load(&mut section, &shape, &mut common)?;
         let conditions = self.conditions_of_mesh(&mut section, &groups)?;
-        common.written = item.written();
+        common.location = item.location();
         common.cut = cut.unwrap_or(Cut::Auto);
         let placements = section.read("instances", |item| self.placements(item))?;
         let only = section.tables("only")?;

@@ -23,7 +23,7 @@ use super::model::grid::GridSpec;
 use super::model::spec::SceneSpec;
 use super::validate::MOST_BODIES;
 use ::mesh::BoxMesh;
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 use document::{Item, Section, Value};
 use elements::form::Form;
 use fields::Shape;
@@ -32,18 +32,11 @@ use values::MOST;
 
 /// The scene in `text`; `file` names it in messages, which are one line whatever the texts are that they quote.
 pub fn read(file: &str, text: &str) -> Result<SceneSpec> {
-    spec(file, text).map_err(|e| match e {
-        Error::Input(said) if said.contains(char::is_control) => {
-            let shown = |c: char| {
-                if c.is_control() {
-                    c.escape_default().to_string()
-                } else {
-                    c.to_string()
-                }
-            };
-            Error::Input(said.chars().map(shown).collect())
+    spec(file, text).map_err(|error| match error.kind() {
+        ErrorKind::Input => {
+            error.retold(|message| base::location::on_one_line(message).into_owned())
         }
-        other => other,
+        _ => error,
     })
 }
 
@@ -85,7 +78,7 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
     let options = scene.read("options", options)?;
     scene.finish()?;
     if bodies.is_empty() {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{file}: the scene has no bodies ([[body]] or [grid] was expected)"
         )));
     }
@@ -225,7 +218,7 @@ impl Reader {
         let mut body = BodySpec::new(name, mesh);
         self.conditions_of_box(section, &shape, &mut body)?;
         body.order = section.read("order", order)?.unwrap_or(self.order);
-        (body.map, body.written) = (map, item.written());
+        (body.map, body.location) = (map, item.location());
         Ok((body, shape))
     }
 

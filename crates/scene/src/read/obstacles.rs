@@ -11,7 +11,7 @@ use crate::model::joints::{Extent, ObstacleSpec};
 use crate::model::profile::Profile;
 use crate::model::rigid::Rigid;
 use crate::model::rigid_surface::RigidSurface;
-use base::{Error, Result};
+use base::{Error, ErrorKind, Result};
 
 /// The rigid body that an elastic body cannot enter, and how it is taken.
 #[derive(Default)]
@@ -55,15 +55,15 @@ impl Reader {
             ));
         }
         let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
-        let written = section.need("side", "a side, a list of them or \"all\"")?;
+        let side = section.need("side", "a side, a list of them or \"all\"")?;
         let sides = match of_cells {
             false if several => {
-                let sides = self.obstacle_sides(written)?;
+                let sides = self.obstacle_sides(side)?;
                 let each = meant.iter().map(|b| (Some(b.name.clone()), sides.clone()));
                 each.collect()
             }
-            false => vec![(body.clone(), self.obstacle_sides(written)?)],
-            true => self.obstacle_groups(written, &meant)?,
+            false => vec![(body.clone(), self.obstacle_sides(side)?)],
+            true => self.obstacle_groups(side, &meant)?,
         };
         let extent = self.extent(&mut section, item, "[[obstacle]]")?;
         let mut bound = |key| section.read(key, |item| self.profile(item));
@@ -100,7 +100,7 @@ impl Reader {
             distance: shape.distance,
             adjust: shape.adjust,
             ramp: ramp.clone(),
-            written: item.written(),
+            location: item.location(),
         };
         Ok(sides.into_iter().map(one).collect())
     }
@@ -231,9 +231,9 @@ impl Reader {
             };
         };
         let name = item.text("the name of a group of faces")?;
-        let told = |e: Error| match e {
-            Error::Input(message) => Error::Input(format!("{}{message}", item.written())),
-            other => other,
+        let told = |error: Error| match error.kind() {
+            ErrorKind::Input => error.at(item.location()),
+            _ => error,
         };
         if let Some(file) = file {
             let mesh = load_beside(file)?;

@@ -3,7 +3,7 @@
 use super::document::{Item, Value};
 use super::Reader;
 use crate::model::motion::Motion;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use mesh::bytes;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ pub(super) struct Placement {
     /// Its name, if it has one of its own.
     pub name: Option<String>,
     /// The place where it was written, as messages begin with it.
-    pub written: String,
+    pub location: Location,
 }
 
 impl Reader {
@@ -46,11 +46,10 @@ impl Reader {
             Value::Table(_) => self.placement_table(item)?,
             _ => return item.expected("a placement, as a list of numbers or a table with `at`,"),
         };
-        let written = item.written();
         Ok(Placement {
             motion,
             name,
-            written,
+            location: item.location(),
         })
     }
 
@@ -100,7 +99,7 @@ impl Reader {
             let line = line.split('#').next().unwrap_or_default();
             let is_gap = |c: char| c.is_whitespace() || c == ',' || c == ';';
             let mut words: Vec<&str> = line.split(is_gap).filter(|w| !w.is_empty()).collect();
-            let written = format!("{shown}:{number}: ");
+            let location = Location::line(shown.to_string(), number);
             let Some(last) = words.last() else { continue };
             let name = match last.parse::<f64>() {
                 Ok(_) => None,
@@ -112,11 +111,11 @@ impl Reader {
             };
             let numbers: std::result::Result<Vec<f64>, String> = words.iter().map(read).collect();
             let motion = numbers.and_then(|numbers| self.motion(&numbers));
-            let motion = motion.map_err(|message| Error::Input(format!("{written}{message}")))?;
+            let motion = motion.map_err(|message| Error::input(message).at(&location))?;
             out.push(Placement {
                 motion,
                 name,
-                written,
+                location,
             });
         }
         Ok(out)

@@ -19,7 +19,7 @@ impl Reader {
             name,
             body,
             point,
-            written: item.written(),
+            location: item.location(),
         })
     }
 }

@@ -44,7 +44,7 @@ impl Reader {
             gap,
             dirichlet,
             update: update.unwrap_or(false),
-            written: item.written(),
+            location: item.location(),
         })
     }
 

@@ -54,7 +54,7 @@ impl Reader {
             extent,
             multipliers,
             adjust: adjust.unwrap_or(0.0),
-            written: item.written(),
+            location: item.location(),
         })
     }
 
@@ -79,7 +79,7 @@ impl Reader {
             adjust: adjust.unwrap_or(0.0),
             adjusted: Vec::new(),
             ramp,
-            written: item.written(),
+            location: item.location(),
         })
     }
 
@@ -112,7 +112,7 @@ impl Reader {
         Ok((auto == Some(true)).then(|| AutoContact {
             distance,
             adjust: adjust.unwrap_or(0.0),
-            written: item.written(),
+            location: item.location(),
         }))
     }
 

@@ -39,7 +39,7 @@ impl Joined<'_> {
     /// Makes the rows; given values are checked against those of load step `step`, or of all steps.
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) where given values contradict rows.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where given values contradict rows.
     pub fn rows(
         self,
         bodies: &mut [Body],

@@ -11,7 +11,7 @@ use crate::model::steps::{Factors, Steps};
 use crate::quantity::unfit_length;
 use crate::rows::at_node::AtNode;
 use crate::validate::agree;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use fetifeti::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ pub(crate) struct Checks<'a> {
     pub bodies: &'a [Body],
     pub obstacles: &'a [Obstacle],
     /// Where every contact and obstacle was written, by number of its entry.
-    pub written: Vec<&'a str>,
+    pub locations: Vec<&'a Location>,
     /// The factors of every load step.
     pub factors: Vec<Factors<'a>>,
 }
@@ -36,19 +36,19 @@ impl<'a> Checks<'a> {
         spec: &'a SceneSpec,
         steps: &'a Option<Steps>,
     ) -> Checks<'a> {
-        let contacts = spec.contacts.iter().map(|c| c.written.as_str());
-        let rest = spec.obstacles.iter().map(|o| o.written.as_str());
+        let contacts = spec.contacts.iter().map(|c| &c.location);
+        let rest = spec.obstacles.iter().map(|o| &o.location);
         Checks {
             bodies,
             obstacles,
-            written: contacts.chain(rest).collect(),
+            locations: contacts.chain(rest).collect(),
             factors: Factors::every(steps),
         }
     }
 
     /// Drops the contact rows that ties or given values decide, and adds the rows of obstacles.
     ///
-    /// # Errors [`Error::Input`] if ties or given values violate an inequality, or if two bounds contradict each other.
+    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) if ties or given values violate an inequality, or if two bounds contradict each other.
     pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
         for point in points.iter_mut() {
             let mut rows = std::mem::take(&mut point.rows);
@@ -83,7 +83,7 @@ impl<'a> Checks<'a> {
             let fail = |why: String| {
                 let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
                 let at = members[0].spot(self.bodies);
-                Err(Error::Input(format!(
+                Err(Error::input(format!(
                     "{}{} {why} at {at}{}, which contradicts their contact \
                      (u of `{a}` − u of `{b}` ≤ {gap} was expected)",
                     self.place(entry, members[1]),
@@ -130,12 +130,12 @@ impl<'a> Checks<'a> {
                 None => !agree(c, 0.0),
             };
             if wrong {
-                return Err(Error::Input(format!(
-                    "{}the given values of {who} at {at}{} by {}",
-                    self.bodies[first.body].spec.written,
+                return Err(Error::input(format!(
+                    "the given values of {who} at {at}{} by {}",
                     factors.when(),
                     c.abs()
-                )));
+                ))
+                .at(&self.bodies[first.body].spec.location));
             }
         }
         Ok(true)
@@ -152,7 +152,7 @@ impl<'a> Checks<'a> {
         let Some(expected) = unfit_length(value) else {
             return Ok((value, entry));
         };
-        Err(Error::Input(format!(
+        Err(Error::input(format!(
             "{}the bound of body `{}` with its factor is {value:e} at {}{} where {expected}",
             self.place(entry, member),
             self.bodies[member.body].spec.name,
@@ -162,9 +162,9 @@ impl<'a> Checks<'a> {
     }
 
     /// The place for messages: the entry, or the body if the default made the contact.
-    fn place(&self, entry: Option<usize>, member: BodyNode) -> &str {
-        let written = entry.and_then(|e| self.written.get(e).copied());
-        written.unwrap_or(&self.bodies[member.body].spec.written)
+    fn place(&self, entry: Option<usize>, member: BodyNode) -> &Location {
+        let location = entry.and_then(|e| self.locations.get(e).copied());
+        location.unwrap_or(&self.bodies[member.body].spec.location)
     }
 
     /// Adds a row at every free node beside an obstacle, in a new point if the node has none yet.
@@ -268,7 +268,7 @@ impl<'a> Checks<'a> {
                 } else {
                     "u"
                 };
-                return Err(Error::Input(format!(
+                return Err(Error::input(format!(
                     "{}body `{}` has the given value {value} at {at}{}, \
                      beyond its obstacle ({what} {relation} {bound} was expected)",
                     self.place(entry, member),
@@ -295,7 +295,7 @@ impl<'a> Checks<'a> {
                 let Some(partner) = partner else { continue };
                 let (below, _) = self.finite(factors, partner.limits(), member)?;
                 if exceeds(0.0, below + above) {
-                    return Err(Error::Input(format!(
+                    return Err(Error::input(format!(
                         "{}the obstacles of body `{}` leave nothing at {}{}: below = {} and above = {above} \
                          (below ≤ above was expected)",
                         self.place(entry, member),

@@ -70,7 +70,7 @@ fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
     let default = Entry {
         pair: &Pair::All,
         extent: &Extent::All,
-        written: "",
+        location: None,
         contact: (spec.default == ByDefault::Contact).then_some(Contact {
             gap: zero,
             number: None,
@@ -146,21 +146,17 @@ impl<'a> Entries<'a> {
             };
             let find = |name: &String| {
                 index.get(name.as_str()).copied().ok_or_else(|| {
-                    Error::Input(format!(
-                        "{}a {} names body `{name}`, which the scene does not have (bodies are {})",
-                        entry.written,
+                    Error::input(format!(
+                        "a {} names body `{name}`, which the scene does not have (bodies are {})",
                         entry.what(),
                         some_names(bodies)
                     ))
+                    .at(entry.location)
                 })
             };
             let (a, b) = (find(first)?, find(second)?);
             if a == b && entry.own.is_none() {
-                return Err(Error::Input(format!(
-                    "{}a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)",
-                    entry.written,
-                    entry.what()
-                )));
+                return Err(Error::input(format!("a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)", entry.what())).at(entry.location));
             }
             let pair = [a.min(b), a.max(b)];
             let list: &mut Vec<_> = entries.named.entry(pair).or_default();
@@ -206,12 +202,12 @@ impl<'a> Entries<'a> {
                     let selected = links.add(*entry, Some(*order))?;
                     if selected == 0 && *entry.extent != Extent::None && !self.moved {
                         let [a, b] = links.names();
-                        return Err(Error::Input(format!(
-                            "{}the {} of {} selects no node of their common face",
-                            entry.written,
+                        return Err(Error::input(format!(
+                            "the {} of {} selects no node of their common face",
                             entry.what(),
                             both(a, b)
-                        )));
+                        ))
+                        .at(entry.location));
                     }
                 }
             }
@@ -231,24 +227,24 @@ impl<'a> Entries<'a> {
             .filter(|(pair, _)| !touching.contains(*pair))
             .flat_map(|(_, list)| list.iter().map(|(entry, _)| entry))
             .collect();
-        apart.sort_by(|a, b| a.written.cmp(b.written));
+        apart.sort_by(|a, b| a.location.cmp(&b.location));
         if let Some(entry) = apart.first() {
             let Pair::Named(a, b) = entry.pair else {
                 unreachable!("only named pairs are in the map")
             };
-            return Err(Error::Input(format!(
-                "{}a {} joins bodies `{a}` and `{b}`, which do not touch",
-                entry.written,
+            return Err(Error::input(format!(
+                "a {} joins bodies `{a}` and `{b}`, which do not touch",
                 entry.what()
-            )));
+            ))
+            .at(entry.location));
         }
         for (entry, used) in &self.all {
             if *entry.extent != Extent::None && !used {
-                return Err(Error::Input(format!(
-                    "{}the {} of all bodies selects no node of any common face",
-                    entry.written,
+                return Err(Error::input(format!(
+                    "the {} of all bodies selects no node of any common face",
                     entry.what()
-                )));
+                ))
+                .at(entry.location));
             }
         }
         Ok(())

@@ -3,13 +3,14 @@
 use crate::body::Body;
 use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::model::profile::Profile;
+use base::Location;
 
 /// One entry, a tie or a contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Entry<'a> {
     pub pair: &'a Pair,
     pub extent: &'a Extent,
-    pub written: &'a str,
+    pub location: Option<&'a Location>,
     /// The data of a contact; `None`: a tie.
     pub contact: Option<Contact<'a>>,
     /// Its number, ties before contacts, if it names the sides: it applies to the interface of these sides only.
@@ -29,7 +30,7 @@ impl<'a> Entry<'a> {
         Entry {
             pair: &spec.pair,
             extent: &spec.extent,
-            written: &spec.written,
+            location: Some(&spec.location),
             contact: None,
             own: spec.sides.map(|_| number),
         }
@@ -40,7 +41,7 @@ impl<'a> Entry<'a> {
         Entry {
             pair: &spec.pair,
             extent: &spec.extent,
-            written: &spec.written,
+            location: Some(&spec.location),
             contact: Some(Contact {
                 gap: &spec.gap,
                 number: Some(number),
@@ -58,11 +59,9 @@ impl<'a> Entry<'a> {
     }
 
     /// The place where it was written, for the middle of a sentence.
-    pub fn line(&self) -> &str {
-        match self.written.trim_end_matches(": ") {
-            "" => "another entry",
-            place => place,
-        }
+    pub fn line(&self) -> String {
+        let place = self.location.and_then(Location::place);
+        place.unwrap_or_else(|| "another entry".into())
     }
 }
 

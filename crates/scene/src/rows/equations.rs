@@ -34,7 +34,7 @@ pub struct Equation {
 /// The equations of a scene, each a block of its own.
 ///
 /// # Errors
-/// [`Error::Input`] where all terms of an equation are given and contradict it.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) where all terms of an equation are given and contradict it.
 pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equation>> {
     let mut out = Vec::with_capacity(specs.len());
     if specs.is_empty() {
@@ -64,10 +64,11 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
         }
         let Some((block, subdomain)) = first else {
             if !agree(given, spec.value) {
-                return Err(Error::Input(format!(
-                    "{}the given values make {given} of an equation that asks for {}",
-                    spec.written, spec.value
-                )));
+                return Err(Error::input(format!(
+                    "the given values make {given} of an equation that asks for {}",
+                    spec.value
+                ))
+                .at(&spec.location));
             }
             continue;
         };

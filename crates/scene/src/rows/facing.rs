@@ -8,7 +8,7 @@ use crate::geometry::single::{has_lonely_nodes, Reached};
 use crate::geometry::{mortar, overlap};
 use crate::model::joints::{Extent, Pair};
 use crate::model::spec::SceneSpec;
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use fetifeti::substructures::BodyNode;
 use std::collections::{HashMap, HashSet};
 
@@ -27,7 +27,7 @@ pub(super) fn facing(
         adjust: (t.adjust, &[]),
         distance: None,
         extent: &t.extent,
-        written: &t.written,
+        location: &t.location,
     });
     let contacts = spec.contacts.iter().map(|c| Named {
         sides: c.sides,
@@ -36,7 +36,7 @@ pub(super) fn facing(
         adjust: (c.adjust, &c.adjusted),
         distance: c.distance,
         extent: &c.extent,
-        written: &c.written,
+        location: &c.location,
     });
     let mut numbers = HashMap::new();
     for (k, body) in bodies.iter().enumerate() {
@@ -134,7 +134,7 @@ struct Named<'s> {
     adjust: (f64, &'s [BodyNode]),
     distance: Option<f64>,
     extent: &'s Extent,
-    written: &'s str,
+    location: &'s Location,
 }
 
 /// Two bodies in increasing order, a side of each, and which of the two carries the multipliers.
@@ -145,7 +145,7 @@ type Matched = std::result::Result<Interface, String>;
 
 impl Named<'_> {
     fn error<T>(&self, why: &str) -> Result<T> {
-        Err(Error::Input(format!("{}{why}", self.written)))
+        Err(Error::input(why).at(self.location))
     }
 
     /// How far apart the sides may be.

@@ -108,7 +108,7 @@ fn nodes(
     }
     Some(format!(
         "{}the tie of `{own}` and `{other}` leaves out {} of {} nodes of `{own}`: {}",
-        origin.written,
+        origin.location,
         left.len(),
         all.len(),
         why.join(", ")
@@ -140,7 +140,7 @@ fn touching(origin: &Origin, interfaces: &[&Interface]) -> Option<String> {
         format!(
             "{}the contact of `{}` and `{}` takes {moved} {nodes} as touching that are up to {longest:.3e} apart or \
              overlap as much; coordinates stay as they are",
-            origin.written, origin.names[0], origin.names[1]
+            origin.location, origin.names[0], origin.names[1]
         )
     })
 }
@@ -194,7 +194,7 @@ fn faces(bodies: &[Body], origin: &Origin, interfaces: &[&Interface]) -> Option<
     });
     Some(format!(
         "{}the {what} of `{}` and `{}` leaves out {}: they lie opposite nothing of the other side{within}",
-        origin.written,
+        origin.location,
         origin.names[0],
         origin.names[1],
         parts.join(" and ")

@@ -74,15 +74,15 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
                     continue;
                 }
                 let [a, b] = self.names();
-                return Err(Error::Input(format!(
-                    "{}the contact of {} selects the node at t = {}, \
+                return Err(Error::input(format!(
+                    "the contact of {} selects the node at t = {}, \
                      which the tie of {} selects too \
                      (ranges that share no more than their ends were expected)",
-                    entry.written,
                     both(a, b),
                     Parameters(t),
                     tie.line()
-                )));
+                ))
+                .at(entry.location));
             }
             let value = self.gap(&entry, contact, k)?;
             self.limits.push(Limit {
@@ -101,12 +101,8 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             None => self.ordered = Some((entry, order)),
             Some((other, known)) if *known != order => {
                 let [a, b] = order.map(|k| &self.bodies[k].spec.name);
-                return Err(Error::Input(format!(
-                    "{}the contact names bodies `{a}` and `{b}` in the other order than the contact of {} \
-                     (the second body lies above the first, one order for a pair was expected)",
-                    entry.written,
-                    other.line()
-                )));
+                return Err(Error::input(format!("the contact names bodies `{a}` and `{b}` in the other order than the contact of {} \
+                     (the second body lies above the first, one order for a pair was expected)", other.line())).at(entry.location));
             }
             Some(_) => {}
         }
@@ -131,11 +127,11 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             return Ok(value);
         };
         let ([a, b], at) = (self.names(), body.spec.spot(at));
-        Err(Error::Input(format!(
-            "{}the gap of {} is {value:e} at {at} where {expected}",
-            entry.written,
+        Err(Error::input(format!(
+            "the gap of {} is {value:e} at {at} where {expected}",
             both(a, b)
-        )))
+        ))
+        .at(entry.location))
     }
 
     /// Marks the nodes in contact.

@@ -5,13 +5,14 @@ use std::ops::Range;
 
 use crate::body::Body;
 use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
+use base::Location;
 
 /// An entry that names sides.
 pub(crate) struct Origin {
     /// The names in the entry: of two surfaces, or of sides of bodies.
     pub names: [String; 2],
-    /// Where it was written, or empty.
-    pub written: String,
+    /// Where it was written, if it was.
+    pub location: Location,
     /// The bodies that have each of the two, with their sides.
     pub lists: [Vec<(usize, usize)>; 2],
     /// Which of the two carries the multipliers.
@@ -77,7 +78,7 @@ impl Origin {
         // Who ties a part of a face leaves out the rest.
         (tolerance.is_some() || tie.extent == Extent::All).then(|| Origin {
             names: both,
-            written: tie.written.clone(),
+            location: tie.location.clone(),
             lists,
             which: tie.multipliers.unwrap_or(0),
             reach: None,
@@ -98,7 +99,7 @@ impl Origin {
         let whole = matches!(contact.extent, Extent::All | Extent::Within { .. });
         whole.then(|| Origin {
             names: both,
-            written: contact.written.clone(),
+            location: contact.location.clone(),
             lists,
             which: contact.multipliers.unwrap_or(0),
             reach: contact.distance,

@@ -257,13 +257,13 @@ fn prescribe(
         for (m, &own) in tied.iter().zip(&given) {
             match own {
                 Some(other) if !agree(value, other) => {
-                    return Err(Error::Input(format!(
-                        "{}{} are tied at {}, where they prescribe {value} and {other} \
+                    return Err(Error::input(format!(
+                        "{} are tied at {}, where they prescribe {value} and {other} \
                          (equal values were expected)",
-                        bodies[m.body].spec.written,
                         both(&bodies[tied[k].body].spec.name, &bodies[m.body].spec.name),
-                        m.spot(bodies),
-                    )));
+                        m.spot(bodies)
+                    ))
+                    .at(&bodies[m.body].spec.location));
                 }
                 Some(_) => {}
                 None => inherited.push((*m, component, value)),

@@ -121,13 +121,8 @@ pub(crate) fn selected(
             }
         }
         let [a, b] = interface.bodies.map(|k| &bodies[k].spec.name);
-        Error::Input(format!(
-            "{}the {} of bodies `{a}` and `{b}` names the node with {missing}, but their common face has {} nodes \
-             and none like that",
-            entry.written,
-            entry.what(),
-            interface.shared.len()
-        ))
+        Error::input(format!("the {} of bodies `{a}` and `{b}` names the node with {missing}, but their common face has {} nodes \
+             and none like that", entry.what(), interface.shared.len())).at(entry.location)
     })
 }
 
@@ -142,22 +137,19 @@ fn unmatched(
     let at = has.spec.spot(node);
     let t = Parameters(t);
     // Messages name the body that was written later.
-    let later = &bodies[interface.bodies[1]].spec.written;
-    let place = if entry.written.is_empty() {
-        later
-    } else {
-        entry.written
-    };
+    let later = &bodies[interface.bodies[1]].spec.location;
+    let location = entry.location.unwrap_or(later);
     let (are, face) = match entry.contact {
         None => ("are tied", "tied face"),
         Some(_) => ("are in contact", "contact face"),
     };
-    Error::Input(format!(
-        "{place}bodies `{}` and `{}` {are}, but node {at} of `{}` (t = {t}) meets no node of `{}` \
+    Error::input(format!(
+        "bodies `{}` and `{}` {are}, but node {at} of `{}` (t = {t}) meets no node of `{}` \
          (matching nodes were expected on a {face})",
         bodies[interface.bodies[0]].spec.name,
         bodies[interface.bodies[1]].spec.name,
         has.spec.name,
         other.spec.name,
     ))
+    .at(location)
 }

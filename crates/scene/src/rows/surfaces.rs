@@ -11,7 +11,7 @@ use crate::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::SceneSpec;
 use base::linalg::vec3::{dot, minus};
-use base::{Error, Result};
+use base::{Error, Location, Result};
 use elements::form::Form;
 
 /// Where nothing is said, sides of bodies are in contact if their distance is at most this fraction of their edges.
@@ -49,7 +49,7 @@ pub(crate) fn expand(
                     &spec.form,
                     [a, b],
                     (tie.multipliers, reach, tolerance.is_some()),
-                    &tie.written,
+                    &tie.location,
                 )?;
                 let entries = ties.len()..ties.len() + found.len();
                 origins.extend(Origin::of_tie(&names, &tie, entries));
@@ -77,7 +77,7 @@ pub(crate) fn expand(
                     &spec.form,
                     [a, b],
                     (contact.multipliers, reach, false),
-                    &contact.written,
+                    &contact.location,
                 )?;
                 let first = spec.ties.len() + contacts.len();
                 let entries = first..first + found.len();
@@ -118,7 +118,7 @@ pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec
             &spec.form,
             [a, b],
             wanted,
-            &contact.written,
+            &contact.location,
         );
         contacts.extend(
             found
@@ -148,7 +148,7 @@ fn pairs(
     form: &Form,
     names: [&String; 2],
     (multipliers, reach, is_tolerance): (Option<usize>, f64, bool),
-    written: &str,
+    location: &Location,
 ) -> Result<Vec<Found>> {
     let lists = names.map(|name| with(bodies, name));
     let same = names[0] == names[1];
@@ -167,11 +167,8 @@ fn pairs(
     let Some(last) = last else {
         let body = lists[0].first().or(lists[1].first());
         let body = body.map_or("", |b| bodies[b.0].spec.name.as_str());
-        return Err(Error::Input(format!(
-            "{written}the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
-             expected, or two sides of one body: the parts of its surface that meet)",
-            names[0]
-        )));
+        return Err(Error::input(format!("the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
+             expected, or two sides of one body: the parts of its surface that meet)", names[0])).at(location));
     };
     let found = |first: (usize, usize), second: (usize, usize)| {
         let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
@@ -218,10 +215,11 @@ fn pairs(
     if out.is_empty() {
         let (first, second) = last;
         let why = apart(bodies, [first.0, second.0], [first.1, second.1]);
-        return Err(Error::Input(format!(
-            "{written}the surfaces `{}` and `{}` do not meet: {why}",
+        return Err(Error::input(format!(
+            "the surfaces `{}` and `{}` do not meet: {why}",
             names[0], names[1]
-        )));
+        ))
+        .at(location));
     }
     Ok(out)
 }
@@ -278,17 +276,14 @@ fn found(
                     adjust: auto.adjust,
                     adjusted: Vec::new(),
                     ramp: None,
-                    written: auto.written.clone(),
+                    location: auto.location.clone(),
                 }),
                 _ => {}
             }
         }
     }
     if out.is_empty() {
-        Err(Error::Input(format!(
-        "{}no two bodies are near each other with opposite normals (a larger `distance` was expected)",
-        auto.written
-    )))
+        Err(Error::input("no two bodies are near each other with opposite normals (a larger `distance` was expected)").at(&auto.location))
     } else {
         Ok(out)
     }

@@ -84,7 +84,7 @@ impl Scene {
     /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (without `[steps]` the only step is 0).
     ///
     /// # Errors
-    /// [`Error::Input`](base::Error::Input) for a step that the scene does not have.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.
     pub fn gaps(&self, owns: &dyn Fn(usize) -> bool, step: usize) -> Result<Vec<f64>> {
         let factors = Factors::of(&self.steps, step)?;
         let rows = self.each_row(owns);

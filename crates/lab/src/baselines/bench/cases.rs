@@ -29,7 +29,7 @@ impl Named {
     /// Writes the scene file, and the mesh beside it. Returns the path of the scene and the names of all files.
     ///
     /// # Errors
-    /// [`Error::Environment`](base::Error::Environment) if they cannot be written.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) if they cannot be written.
     pub fn write(&self, dir: &Path, quick: bool) -> Result<(PathBuf, Vec<String>)> {
         let mut names = vec![format!("{}.toml", self.name)];
         let file = dir.join(&names[0]);

@@ -66,8 +66,8 @@ struct Case {
 /// Runs the benchmark. Under mpirun only rank 0 starts jobs, the others wait. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for mistakes that are found before anything runs, and for a scene that ours finds unsolvable;
-/// [`Error::NotConverged`] at the end where ours did not converge; [`Error::Environment`] without mpirun or disk. A
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for mistakes that are found before anything runs, and for a scene that ours finds unsolvable;
+/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) at the end where ours did not converge; [`ErrorKind::Environment`](base::ErrorKind::Environment) without mpirun or disk. A
 /// baseline that fails is no error but a row with a message.
 pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     let baselines = session.agree(table::select(&wanted.with))?;
@@ -354,7 +354,7 @@ fn write(destination: &Destination, cases: &[Case], report: &BenchReport) -> Res
         for (home, names) in cases.iter().filter_map(|c| c.home.as_ref()) {
             for name in names {
                 let bytes = std::fs::read(home.file(name))
-                    .map_err(|e| Error::environment(format!("cannot read {name}: {e}")))?;
+                    .map_err(|e| Error::environment(format!("cannot read {name}")).because(e))?;
                 output::write_file(&dir.join(name), |out| out.write_all(&bytes))?;
             }
             files.extend_from_slice(names);

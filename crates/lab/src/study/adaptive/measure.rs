@@ -8,7 +8,7 @@ use crate::assembled::layout::Layout;
 use crate::assembled::reference::{Precision, Reference};
 use crate::assembled::system::Copies;
 use crate::baselines::single;
-use base::{Error, Result};
+use base::{ErrorKind, Result};
 use fetifeti::feti::settings::Adaptive;
 use fetifeti::feti::MethodSettings;
 use fetifeti::substructures::{Subdomain, Substructures};
@@ -128,7 +128,7 @@ fn ours(
             let solved = match solve(session, problem, way) {
                 Ok(solved) => solved,
                 // If one variant fails, its row says why.
-                Err(e @ Error::Environment(_)) => return Err(e),
+                Err(e) if e.kind() == ErrorKind::Environment => return Err(e),
                 Err(e) => {
                     if round == 0 {
                         refused(way, e.to_string(), record);
@@ -272,7 +272,7 @@ pub fn fine(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) 
                 seconds,
             } = match solve(session, &problem, way) {
                 Ok(solved) => solved,
-                Err(e @ Error::Environment(_)) => return Err(e),
+                Err(e) if e.kind() == ErrorKind::Environment => return Err(e),
                 Err(e) => {
                     out.message = Some(e.to_string());
                     return Ok(out);

@@ -232,7 +232,7 @@ struct Effort {
 /// every case can be solved again separately.
 ///
 /// # Errors
-/// [`Error::Input`](base::Error::Input) on several ranks; those of the disk; PETSc's own errors.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) on several ranks; those of the disk; PETSc's own errors.
 pub fn run(
     session: &Session,
     quick: bool,

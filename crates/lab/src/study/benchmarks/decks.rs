@@ -103,11 +103,11 @@ fn solve(runner: &Runner, name: &str) -> Result<Found> {
     let done = command
         .stdin(Stdio::null())
         .output()
-        .map_err(|e| Error::environment(format!("the program cannot be started: {e}")))?;
+        .map_err(|e| Error::environment("the program cannot be started").because(e))?;
     let seconds = clock.elapsed().as_secs_f64();
     if !done.status.success() {
         let said = String::from_utf8_lossy(&done.stderr);
-        return Err(Error::NotConverged(format!("{name}: {}", said.trim())));
+        return Err(Error::not_converged(format!("{name}: {}", said.trim())));
     }
     Ok(Found {
         tables: read_dat(&text(&out.join(format!("{name}.dat")))?),
@@ -225,12 +225,13 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 fn text(path: &Path) -> Result<String> {
     std::fs::read_to_string(path)
-        .map_err(|e| Error::environment(format!("cannot read {}: {e}", path.display())))
+        .map_err(|e| Error::environment(format!("cannot read {}", path.display())).because(e))
 }
 
 fn unpacked(path: &PathBuf) -> Result<String> {
-    let refused =
-        |e: std::io::Error| Error::environment(format!("cannot read {}: {e}", path.display()));
+    let refused = |e: std::io::Error| {
+        Error::environment(format!("cannot read {}", path.display())).because(e)
+    };
     let file = std::fs::File::open(path).map_err(refused)?;
     let mut bytes = Vec::new();
     GzDecoder::new(file)

@@ -211,7 +211,7 @@ fn record(
 ) -> Result<Mesh> {
     let pressures = pressures(run, place);
     let measured = measure(&run.rows, &pressures).ok_or_else(|| {
-        Error::NotConverged(format!(
+        Error::not_converged(format!(
             "{}: too few nodes touch for a half-width",
             run.file
         ))

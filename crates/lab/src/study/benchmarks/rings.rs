@@ -36,7 +36,7 @@ impl Rings {
     /// A row of the table.
     ///
     /// # Errors
-    /// [`Error::Environment`] if the program was built with another table.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) if the program was built with another table.
     pub fn read(row: usize) -> Result<Rings> {
         let broken = |what: &str| Error::environment(format!("rings.json has no {what}"));
         let table: Json = serde_json::from_str(TABLE).map_err(|e| broken(&e.to_string()))?;

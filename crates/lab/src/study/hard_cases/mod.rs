@@ -176,12 +176,12 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
     let solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
         // The scene has been read: a refusal from here on says that it has no solution.
-        Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {
+        Err(e) if refused_or_failed(&e) => {
             record.message = Some(e.to_string());
             let exists = Reference::certified(session, &scene, &Layout::new(&scene)).is_ok();
-            record.verdict = match (exists, &e) {
-                (true, Error::Input(_) | Error::Unfit(_)) => Verdict::Wrong,
-                (true, _) => Verdict::NotConverged,
+            record.verdict = match (exists, e.is_not_converged()) {
+                (true, false) => Verdict::Wrong,
+                (true, true) => Verdict::NotConverged,
                 (false, _) => Verdict::Refused,
             };
             return Ok(record);
@@ -260,16 +260,23 @@ fn compare(session: &Session, solved: &Solved, record: &mut Record) -> Result<()
             let active = groups.holds.iter().filter(|holds| **holds).count();
             record.active[1] = record.active[0].map(|_| active);
         }
-        Err(e @ Error::NotConverged(_)) if session.rank() == 0 => {
-            eprintln!("{}: {e}", solved.scene.title);
+        Err(e) if e.is_not_converged() => {
+            if session.rank() == 0 {
+                eprintln!("{}: {e}", solved.scene.title);
+            }
         }
-        Err(Error::NotConverged(_)) => {}
         Err(e) => return Err(e),
     }
     if record.reference.is_none() {
         record.message = Some("the direct solver finds no solution".into());
     }
     Ok(())
+}
+
+/// Whether a scene was refused, or its solve did not converge.
+fn refused_or_failed(error: &Error) -> bool {
+    use base::ErrorKind::{Input, NotConverged, Unfit};
+    matches!(error.kind(), Input | Unfit | NotConverged)
 }
 
 /// The verdict, when all comparisons are made.

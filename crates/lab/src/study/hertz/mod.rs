@@ -123,7 +123,7 @@ pub fn meshes(case: HertzCase, quick: bool) -> &'static [usize] {
 /// Runs the study, and calls `progress` before every mesh. Collective.
 ///
 /// # Errors
-/// Those of the method; [`Error::NotConverged`] where a solution cannot be measured.
+/// Those of the method; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where a solution cannot be measured.
 pub fn run(
     session: &Session,
     quick: bool,
@@ -164,7 +164,7 @@ pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
     let rows = solved.rows(session);
     let pressures = pressures(&solved.scene, &rows);
     let measured = measure(&rows, &pressures).ok_or_else(|| {
-        Error::NotConverged(format!(
+        Error::not_converged(format!(
             "{name}: too few nodes touch for a half-width (more than three were expected)"
         ))
     })?;

@@ -44,7 +44,7 @@ pub struct NetworkRecord {
 /// Runs the task that `file` describes. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for a file that the study has not written; those of the method; [`Error::NotConverged`].
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a file that the study has not written; those of the method; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged).
 pub fn run_task(session: &Session, file: &Path) -> Result<()> {
     let task: Task = launch::task(session, file, "a task that study scaling has written")?;
     match &task {
@@ -121,7 +121,7 @@ fn once(session: &Session, problem: fetifeti::Substructures) -> Result<Point> {
 
     let (solution, solve_total) = timed(session, || solver.solve())?;
     if !solution.converged() {
-        return Err(Error::NotConverged(format!(
+        return Err(Error::not_converged(format!(
             "a measurement did not converge: {}",
             solution.status
         )));

@@ -83,7 +83,7 @@ impl Settings {
     /// Reads `-scaling_alpha`, `-scaling_beta` and `-compare_time_limit`.
     ///
     /// # Errors
-    /// [`Error::Input`] for numbers that are impossible for a network.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for numbers that are impossible for a network.
     pub fn from_options(session: &Session, quick: bool, petsc: &[String]) -> Result<Settings> {
         let options = Options::new(session, "scaling_");
         let mut network = USUAL;
@@ -122,7 +122,7 @@ impl Settings {
 /// Runs the study, and calls `progress` before every run. It is called on one rank: the runs have ranks of their own.
 ///
 /// # Errors
-/// [`Error::Input`] on several ranks or for a case; those of the runs.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) on several ranks or for a case; those of the runs.
 pub fn run(
     session: &Session,
     settings: &Settings,

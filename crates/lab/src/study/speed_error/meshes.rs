@@ -19,7 +19,7 @@ struct Tight {
 /// The discretisation errors of the meshes.
 ///
 /// # Errors
-/// Those of the method; [`Error::NotConverged`] where it stops early.
+/// Those of the method; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where it stops early.
 pub fn errors(session: &Session, case: SpeedErrorCase, meshes: &[usize]) -> Result<Vec<MeshError>> {
     let finest = meshes[meshes.len() - 1];
     let fine = match case {
@@ -58,7 +58,7 @@ impl Tight {
         let name = format!("{}_{n}.toml", case.name());
         let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
         if !solved.solution.converged() {
-            return Err(Error::NotConverged(format!(
+            return Err(Error::not_converged(format!(
                 "{name}: {}",
                 solved.solution.status
             )));

@@ -126,7 +126,7 @@ pub fn tolerances(quick: bool) -> &'static [f64] {
 /// methods need the machine.
 ///
 /// # Errors
-/// [`Error::Input`] on several ranks; those of `compare`.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) on several ranks; those of `compare`.
 pub fn run(
     session: &Session,
     quick: bool,
@@ -256,7 +256,7 @@ fn compare(
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .output()
-        .map_err(|e| Error::environment(format!("cannot start compare: {e}")))?;
+        .map_err(|e| Error::environment("cannot start compare").because(e))?;
     let text = std::fs::read_to_string(&file).map_err(|_| {
         let said = String::from_utf8_lossy(&out.stderr);
         let said = said

@@ -10,7 +10,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::solved::Solved;
-use base::{Error, Result};
+use base::Result;
 use fetifeti::contact::ContactType;
 use fetifeti::feti::MethodSettings;
 use petsc::Session;
@@ -132,13 +132,13 @@ fn walls(session: &Session, family: &Family, jump: f64, count: usize) -> Result<
                     converged: solved.solution.converged(),
                 }
             }
-            Err(Error::NotConverged(reason)) => Wall {
+            Err(error) if error.is_not_converged() => Wall {
                 seed,
                 steps: 0,
                 damped: 0,
                 iterations: 0,
                 energy: None,
-                reason,
+                reason: error.to_string(),
                 converged: false,
             },
             Err(e) => return Err(e),

@@ -54,7 +54,7 @@ impl Cells {
     /// row and layer come first.
     ///
     /// # Errors
-    /// [`Error::Input`] when the number of values is another one.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the number of values is another one.
     pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<Cells> {
         Cells::listed(name.into(), None, counts, values)
     }
@@ -68,7 +68,7 @@ impl Cells {
         if product(counts) != Some(values.len()) || values.is_empty() {
             let shape = shape(counts);
             let found = values.len();
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{name}: {found} numbers where {shape} were expected"
             )));
         }
@@ -80,7 +80,7 @@ impl Cells {
     /// are text; other files are f32 or f64, depending on their size.
     ///
     /// # Errors
-    /// [`Error::Input`] when the file cannot be read, or holds another number of numbers.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file cannot be read, or holds another number of numbers.
     pub fn read(path: &Path, counts: [usize; 3], format: Option<NumberFormat>) -> Result<Cells> {
         let name = path.display().to_string();
         let format = format.or_else(|| numbers::format_of(path));
@@ -97,7 +97,7 @@ impl Cells {
     /// where it is white, and in between as `tone` says. In space the picture is the same in all layers.
     ///
     /// # Errors
-    /// [`Error::Input`] when the file is no PNG picture, has colours or transparent pixels, or for values that the tone
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file is no PNG picture, has colours or transparent pixels, or for values that the tone
     /// does not fit.
     pub fn picture(path: &Path, values: [f64; 2], tone: Tone) -> Result<Cells> {
         let (picture, counts) = Picture::read(path, values, tone)?;
@@ -169,7 +169,7 @@ impl Cells {
         let Data { counts, name, .. } = &*self.data;
         if (0..3).any(|d| place[d] >= self.bodies[d]) {
             let bodies = shape(self.bodies);
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{name} covers {bodies} bodies, and the body at {place:?} is none of them"
             )));
         }

@@ -32,11 +32,11 @@ pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
 /// Opens the file; returns it with its length in bytes.
 pub(crate) fn open(path: &Path) -> Result<(File, u64)> {
     let file = path.display();
-    let fail = |e: std::io::Error| Error::Input(format!("{file} cannot be read: {e}"));
+    let fail = |e: std::io::Error| Error::input(format!("{file} cannot be read")).because(e);
     let opened = File::open(path).map_err(fail)?;
     let data = opened.metadata().map_err(fail)?;
     if !data.is_file() {
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{file} is no file, where one with coefficients was expected"
         )));
     }
@@ -49,7 +49,7 @@ pub fn text(path: &Path) -> Result<Vec<f64>> {
     let (mut opened, _) = open(path)?;
     let mut text = String::new();
     opened.read_to_string(&mut text).map_err(|e| {
-        Error::Input(format!(
+        Error::input(format!(
             "{file} cannot be read as text: {e} (`type = \"f32\"` or \"f64\" reads binary numbers)"
         ))
     })?;
@@ -60,7 +60,7 @@ pub fn text(path: &Path) -> Result<Vec<f64>> {
         for word in line.split(separator).filter(|w| !w.is_empty()) {
             out.push(word.parse().map_err(|_| {
                 let line = k + 1;
-                Error::Input(format!(
+                Error::input(format!(
                     "{file}:{line}: \"{word}\" where a number was expected"
                 ))
             })?);
@@ -88,7 +88,7 @@ impl Array {
         let file = path.display();
         let sizes = product(counts).and_then(|n| Some([n.checked_mul(4)?, n.checked_mul(8)?]));
         let Some(sizes) = sizes else {
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{file}: {all} numbers, more than can be counted"
             )));
         };
@@ -111,7 +111,7 @@ impl Array {
                 n: sizes[0] / 4,
                 double,
             }),
-            _ => Err(Error::Input(format!(
+            _ => Err(Error::input(format!(
                 "{file} has {bytes} bytes where {wanted} were expected for {all} numbers"
             ))),
         }
@@ -148,7 +148,7 @@ impl Reader<'_> {
         let path = &self.array.path;
         let fail = |e: std::io::Error| {
             let file = path.display();
-            Error::Input(format!("{file} cannot be read any more: {e}"))
+            Error::input(format!("{file} cannot be read any more")).because(e)
         };
         let start = SeekFrom::Start((first * width) as u64);
         self.file.seek(start).map_err(fail)?;

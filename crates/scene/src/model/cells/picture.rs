@@ -33,7 +33,7 @@ impl Picture {
     pub fn read(path: &Path, values: [f64; 2], tone: Tone) -> Result<(Picture, [usize; 3])> {
         if tone == Tone::Log && !values.iter().all(|v| *v > 0.0) {
             let (file, [black, white]) = (path.display(), values);
-            return Err(Error::Input(format!(
+            return Err(Error::input(format!(
                 "{file}: the values {black} and {white} where positive numbers were expected for a logarithmic scale"
             )));
         }
@@ -76,7 +76,7 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
     let fail = |e: DecodingError| {
         let reason = e.to_string();
         let reason = reason.trim_end_matches('.');
-        Error::Input(format!(
+        Error::input(format!(
             "{file} is no PNG picture that can be read: {reason}"
         ))
     };
@@ -88,7 +88,7 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
     let size = [reader.info().width, reader.info().height];
     if u64::from(size[0]) * u64::from(size[1]) > MOST_PIXELS {
         let [width, height] = size;
-        return Err(Error::Input(format!(
+        return Err(Error::input(format!(
             "{file} is a picture of {width} x {height} pixels where at most {MOST_PIXELS} were expected"
         )));
     }
@@ -116,7 +116,7 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
         // Messages count from the upper left corner, as image programs do.
         let bad = |what: String| {
             let (i, j) = (k % size[0], k / size[0]);
-            Err(Error::Input(format!(
+            Err(Error::input(format!(
                 "{file}: the pixel ({i}, {j}) {what} was expected"
             )))
         };
