@@ -1,4 +1,4 @@
-//! Substructures built by hand: no scene, no mesh, no finite elements.
+//! Problem built by hand: no scene, no mesh, no finite elements.
 //!
 //!     cargo run --release --example custom_substructures
 //!     mpirun -n 2 target/release/examples/custom_substructures -fetifeti_spectrum
@@ -6,15 +6,14 @@
 //! A sheet of resistors, 13 × 4 nodes. It is cut into three boards (the bodies) that overlap in a column of nodes, and
 //! each board into two halves (the subdomains). The matrix of a half is its graph Laplacian. Wires tie the boards
 //! together, and between the second and the third there is a battery in every wire: u_2 − u_3 = 1.5. One node of the
-//! first board is earthed, the other boards float, and the solver has to detect that by itself: `near_kernel` is
-//! `None`.
+//! first board is earthed, the other boards float, and the solver has to detect that by itself: no
+//! `near_kernel` is given.
 
 use std::process::ExitCode;
 
-use fetifeti::{
-    max_all, Csr, Error, FetiFeti, InterfaceRow, MethodSettings, Result, RowKind, RowLabel,
-    RowSource, Session, Subdomain, Substructures,
-};
+use fetifeti::problem::{Csr, RowLabel, RowSource};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{max_all, Error, FetiFeti, Problem, Result, Row, Session, Subdomain};
 
 const BOARDS: usize = 3;
 const HALVES: usize = 2;
@@ -31,25 +30,14 @@ fn main() -> ExitCode {
 fn run(session: &Session) -> Result<()> {
     let n = BOARDS * HALVES;
     let mine = fetifeti::share(session, n);
-    let problem = Substructures {
-        n_bodies: BOARDS,
-        n_subdomains: n,
-        ragged: false,
-        body_names: (1..=BOARDS).map(|b| format!("board {b}")).collect(),
-        weak: Vec::new(),
-        local: mine.map(half).collect(),
-        // Any rank may provide any row, as long as exactly one does and rows of one block stay together.
-        rows: if session.rank() == 0 {
-            wires()
-        } else {
-            Vec::new()
-        },
-    };
-    let settings = MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let mut problem =
+        Problem::new((1..=BOARDS).map(|b| format!("board {b}")), n).with_subdomains(mine.map(half));
+    // Any rank may provide any row, as long as exactly one does and rows of one block stay together.
+    if session.rank() == 0 {
+        problem.rows = wires();
+    }
+    let settings = MethodSettings::default().rtol(1e-12);
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     let spectrum = solver.spectrum()?.expect("there are multipliers");
     let solution = solver.solve()?;
     if !solution.converged() {
@@ -160,40 +148,25 @@ fn half(index: usize) -> Subdomain {
     let ends = [0, HEIGHT - 1].map(|y| [(2 * board + 1) * WIDTH, y]);
     let mut primal: Vec<u32> = ends.into_iter().filter_map(unknown).collect();
     primal.sort_unstable();
-    let n = nodes.len();
-    Subdomain {
-        index,
-        body: board,
-        k: Csr::from_triplets(n, &triplets).into(),
-        f: nodes.iter().map(|node| current(node[0])).collect(),
-        dofs: nodes.iter().map(|&node| dof(board, node)).collect(),
-        rho: vec![1.0; n],
-        primal,
-        entities: Vec::new(),
-        near_kernel: None,
-        coordinates: None,
-        idle: Vec::new(),
-    }
+    let k = Csr::from_triplets(nodes.len(), &triplets);
+    let f = nodes.iter().map(|node| current(node[0])).collect();
+    let dofs = nodes.iter().map(|&node| dof(board, node)).collect();
+    Subdomain::new(index, board, k, f, dofs).with_primal(primal)
 }
 
 /// One row for each node that two boards share: u_left − u_right = volts.
-fn wires() -> Vec<InterfaceRow> {
+fn wires() -> Vec<Row> {
     let mut rows = Vec::new();
     for left in 0..BOARDS - 1 {
         let x = (left + 1) * HALVES * WIDTH;
         for y in 0..HEIGHT {
-            rows.push(InterfaceRow {
-                terms: vec![(dof(left, [x, y]), 1.0), (dof(left + 1, [x, y]), -1.0)],
-                gap: battery(left + 1) - battery(left),
-                kind: RowKind::Equality,
-                holds: true,
+            let terms = [(dof(left, [x, y]), 1.0), (dof(left + 1, [x, y]), -1.0)];
+            let wire = Row::equality(terms, battery(left + 1) - battery(left))
                 // No two wires end in the same node: every row is a block of its own.
-                block: rows.len() as u64,
-                // Coefficients of one are exact.
-                rounding: 0.0,
+                .in_block(rows.len() as u64)
                 // The label says which boards the wire joins; solutions return it with the row.
-                label: RowLabel::new(RowSource::Interface(left), [None; 2]),
-            });
+                .with_label(RowLabel::new(RowSource::Interface(left), [None; 2]));
+            rows.push(wire);
         }
     }
     rows

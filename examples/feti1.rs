@@ -8,7 +8,8 @@
 
 use std::process::ExitCode;
 
-use fetifeti::{max_all, FetiFeti, MethodSettings, Result, Session};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{max_all, FetiFeti, Result, Session};
 use fetifeti_scene::{free_all_round, Field, GridSpec, Scene};
 
 fn main() -> ExitCode {
@@ -24,11 +25,8 @@ fn run(session: &Session) -> Result<()> {
     let scene = Scene::grid("One-level FETI", &grid)?;
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
-    let settings = MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let settings = MethodSettings::default().rtol(1e-12);
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
     assert!(solution.converged(), "{}", solution.status);
 

@@ -10,7 +10,8 @@
 
 use std::process::ExitCode;
 
-use fetifeti::{Error, FetiFeti, MethodSettings, Result, Session};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{Error, FetiFeti, Result, Session};
 use fetifeti_scene::elements::cell::{Cure, Plane};
 use fetifeti_scene::elements::form::Physics;
 use fetifeti_scene::elements::kind::CellKind;
@@ -117,11 +118,8 @@ fn run(session: &Session) -> Result<()> {
     let mine = fetifeti::share(session, scene.n_subdomains());
     let substructures = scene.substructures(&|s| mine.contains(&s))?;
     // So that the Krylov method's estimate of the spectrum has all its digits.
-    let settings = MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, substructures, settings)?;
+    let settings = MethodSettings::default().rtol(1e-12);
+    let mut solver = FetiFeti::new(session, substructures, settings)?;
     let solution = solver.solve()?;
     if !solution.converged() {
         return Err(Error::not_converged(solution.status.to_string()));

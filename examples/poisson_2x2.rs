@@ -8,7 +8,8 @@
 use std::f64::consts::PI;
 use std::process::ExitCode;
 
-use fetifeti::{max_all, sum_all, Error, FetiFeti, MethodSettings, Result, Session};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{max_all, sum_all, Error, FetiFeti, Result, Session};
 use fetifeti_scene::assembly::ErrorNorms;
 use fetifeti_scene::elements::q1::Quadrature;
 use fetifeti_scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
@@ -37,11 +38,8 @@ fn run(session: &Session) -> Result<()> {
     let problem = scene.substructures(&|s| mine.contains(&s))?;
 
     // A tight tolerance, because the result is compared with the discrete solution below. PETSc options override it.
-    let settings = MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let settings = MethodSettings::default().rtol(1e-12);
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     let spectrum = solver.spectrum()?.expect("tied bodies have multipliers");
     let solution = solver.solve()?;
     assert!(solution.converged(), "{}", solution.status);

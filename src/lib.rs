@@ -39,11 +39,11 @@
 //!
 //! ```text
 //! scene.toml ── scene ──┐
-//!                       ├──> Substructures ──> FetiFeti (contact around feti) ──> Solution ──> report
+//!                       ├──> Problem ──> FetiFeti (contact around feti) ──> Solution ──> report
 //! MATIS, CSR ── embed ──┘
 //! ```
 //!
-//! A program may enter at [`Substructures`] with matrices of its own. The crate `fetifeti-scene` builds substructures
+//! A program may enter at [`Problem`] with matrices of its own. The crate `fetifeti-scene` builds substructures
 //! from scenes; `embed` finds them in matrices of other PETSc programs (docs/embedding.md). The solver does not know
 //! where they came from. `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] combines
 //! both.
@@ -76,7 +76,7 @@
 //!     let scene = Scene::grid("square", &GridSpec::unit_square([2, 2], [4, 4], [32, 32]))?;
 //!     let mine = fetifeti::share(session, scene.n_subdomains());
 //!     let problem = scene.substructures(&|s| mine.contains(&s))?;
-//!     let solver = FetiFeti::new(session, problem, Settings::default())?;
+//!     let mut solver = FetiFeti::new(session, problem, Settings::default())?;
 //!     let solution = solver.solve()?;
 //!     let kappa = solver.spectrum()?.map(|s| s.kappa());
 //!     println!("{} iterations, kappa {kappa:?}", solution.iterations);
@@ -96,14 +96,14 @@
 
 #[allow(unsafe_code)]
 mod capi;
-pub mod contact;
+mod contact;
 mod embed;
-pub mod feti;
+mod feti;
 pub mod settings;
 pub mod solution;
-pub mod solver;
-pub mod status;
-pub mod substructures;
+mod solver;
+mod status;
+mod substructures;
 
 #[cfg(test)]
 #[path = "../tests/support/matrices.rs"]
@@ -117,20 +117,49 @@ mod mpirun;
 #[path = "../tests/support/session.rs"]
 mod testing;
 
-pub use base::linalg::csr::Csr;
+#[doc(inline)]
 pub use base::{Error, Result};
-pub use capi::suits as processor_suits;
-pub use feti::{MethodSettings, Numbers, PcType, Primal, ProjectorKind, Scaling, Spectrum};
-pub use parallel::exchange::{gather_all, max_all, sum_all};
+#[doc(inline)]
+pub use parallel::exchange::{max_all, sum_all};
+#[doc(inline)]
 pub use petsc::Session;
 pub use settings::Settings;
 pub use solution::Solution;
 pub use solver::FetiFeti;
 pub use status::Status;
-pub use substructures::{
-    BodyNode, Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow,
-    Subdomain, Substructures,
-};
+pub use substructures::{Problem, Row, Subdomain};
+
+/// Parts of a [`Problem`]: matrices, primal entities, and what rows say of themselves.
+pub mod problem {
+    pub use crate::feti::Numbers;
+    pub use crate::substructures::{
+        BodyNode, Entity, EntityKind, Idle, RowKind, RowLabel, RowSource,
+    };
+    #[doc(inline)]
+    pub use base::linalg::csr::Csr;
+}
+
+/// Parts of an [`Error`]: its kind, and its place.
+pub mod error {
+    #[doc(inline)]
+    pub use base::{ErrorKind, Fault, Location};
+}
+
+/// The part of the solver's inside that the other crates of this workspace and its tests reach. It is no part of the
+/// interface: names in it change without notice.
+#[doc(hidden)]
+pub mod inside {
+    pub use crate::capi::suits as processor_suits;
+    pub use crate::feti::cost::{forms, sizes::Sizes, variation::JUMPS};
+    pub use crate::feti::deflation::watch;
+    pub use crate::feti::interface::sharing::Sharing;
+    pub use crate::feti::jump::{operator::Jump, weights};
+    pub use crate::feti::projector::{distributed, gram::FEW};
+    pub use crate::feti::subdomain::problem::{factorisations, LocalProblem};
+    pub use crate::feti::subdomain::{equal, scaled::Scaled, turn, which};
+    pub use crate::feti::LinearMethod;
+    pub use crate::substructures::idle;
+}
 
 /// Runs `work` as the whole program. It starts PETSc with the process's arguments (so that PETSc options work) and ends
 /// it afterwards. An error is printed as one sentence and becomes the exit code of [`Error::exit_code`].

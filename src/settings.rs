@@ -1,27 +1,29 @@
 //! Settings of the linear method and of the contact loop, with defaults.
 
-use crate::contact::ContactSettings;
-use crate::feti::MethodSettings;
+pub use crate::contact::{ContactSettings, ContactType};
+pub use crate::feti::settings::{
+    Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
+    Scaling,
+};
 use crate::Result;
 use petsc::{Options, Session};
 
 /// All settings. Krylov settings live in the KSP (`fetifeti_ksp_`).
 ///
 /// ```
-/// use fetifeti::{MethodSettings, PcType, Settings};
+/// use fetifeti::settings::{ContactSettings, ContactType, MethodSettings, PcType, Settings};
 ///
-/// let settings = Settings {
-///     method: MethodSettings {
-///         pc_type: Some(PcType::Dirichlet),
-///         ..MethodSettings::default()
-///     },
-///     ..Settings::default()
-/// };
+/// let settings = Settings::default()
+///     .method(MethodSettings::default().pc_type(PcType::Dirichlet))
+///     .contact(ContactSettings::default().kind(ContactType::Smalbe));
 /// assert_eq!(settings.method.rtol, 1e-6);
-/// // The contact loop as it is by default:
-/// assert_eq!(Settings::from(settings.method.clone()).contact.max_it, 200);
+/// assert_eq!(settings.contact.max_it, 200);
+/// // Settings of the linear method alone, with the contact loop as it is by default:
+/// let settings = Settings::from(MethodSettings::default().rtol(1e-9));
+/// assert_eq!(settings.contact.kind, ContactType::ActiveSet);
 /// ```
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Settings {
     /// The linear method.
     pub method: MethodSettings,
@@ -32,10 +34,7 @@ pub struct Settings {
 impl From<MethodSettings> for Settings {
     /// These settings, with the default contact loop.
     fn from(method: MethodSettings) -> Settings {
-        Settings {
-            method,
-            contact: ContactSettings::default(),
-        }
+        Settings::default().method(method)
     }
 }
 
@@ -51,3 +50,39 @@ impl Settings {
         Ok(Settings { method, contact })
     }
 }
+
+/// For each setting a method of its name that changes it; those behind `optional` are `Option`s.
+macro_rules! setters {
+    ($settings:ident: $($name:ident: $kind:ty),*; optional $($may:ident: $known:ty),*) => {
+        impl $settings {
+            $(
+                #[doc = concat!("These settings with another [`", stringify!($name), "`](Self#structfield.",
+                    stringify!($name), ").")]
+                pub fn $name(mut self, $name: $kind) -> Self {
+                    self.$name = $name;
+                    self
+                }
+            )*
+            $(
+                #[doc = concat!("These settings with another [`", stringify!($may), "`](Self#structfield.",
+                    stringify!($may), "); `None` is the default.")]
+                pub fn $may(mut self, $may: impl Into<Option<$known>>) -> Self {
+                    self.$may = $may.into();
+                    self
+                }
+            )*
+        }
+    };
+}
+
+setters!(Settings: method: MethodSettings, contact: ContactSettings; optional);
+
+setters!(ContactSettings: kind: ContactType, max_it: usize, inner_rtol: f64, face_pc: bool; optional);
+
+setters!(MethodSettings:
+    gamma: f64, precision: Precision, operators: Operators, primal: Primal, projector: ProjectorKind,
+    adaptive: Adaptive, adaptive_max: usize, recycle: usize, coupled: usize, keeps_analyses: bool, check: bool,
+    certify: bool, stops_early: bool, spectrum: bool, rtol: f64, prefix: String;
+    optional
+    pc_type: PcType, lifting: CoarseFunctions, scaling: Scaling, memory: usize, threads: usize
+);

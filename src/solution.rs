@@ -1,12 +1,22 @@
-//! The result of a solve.
+//! The result of a solve, and what it is made of.
 
-use crate::contact::{State, Step};
-use crate::feti::{Kkt, LinearSolution, Spectrum, Verdict};
+pub use crate::contact::{Observer, Progress, State, Step};
+pub use crate::feti::deflation::Cost;
+pub use crate::feti::krylov::solve::Judge;
+use crate::feti::LinearSolution;
+pub use crate::feti::{
+    Certified, Communication, Facts, FreeMotion, Kkt, PerIteration, Spectrum, Uncertified, Verdict,
+};
 use crate::status::Status;
-use crate::substructures::SolvedRow;
+pub use crate::substructures::{RowState, SolvedRow};
+use crate::Result;
+
+/// Estimates the discretisation error of displacements in the energy norm. Collective.
+pub type Discretisation<'a> = dyn FnMut(&[Vec<f64>]) -> Result<f64> + 'a;
 
 /// The solution of a problem, with contact or without; vectors are this rank's part.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Solution {
     /// Displacements of each local subdomain, by local dof; copies inside a body agree.
     pub u: Vec<Vec<f64>>,

@@ -13,9 +13,8 @@ use crate::feti::{
 };
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::substructures::{idle, InterfaceRow, SolvedRow, Substructures};
+use crate::substructures::{idle, Problem, Row, SolvedRow};
 use crate::Result;
-pub use early::{Discretisation, PART};
 use parallel::exchange::any;
 use petsc::{cite, Ksp, Session, Stage};
 
@@ -37,7 +36,7 @@ const CITATION: &str = "@techreport{Lee2010,
 ///     let scene = Scene::load("examples/scenes/model_contact.toml")?;
 ///     let mine = fetifeti::share(session, scene.n_subdomains());
 ///     let problem = scene.substructures(&|s| mine.contains(&s))?;
-///     let solver = FetiFeti::new(session, problem, Settings::default())?;
+///     let mut solver = FetiFeti::new(session, problem, Settings::default())?;
 ///     let solution = solver.solve()?;
 ///     println!("{} after {} iterations", solution.status, solution.iterations);
 ///     Ok(())
@@ -57,7 +56,8 @@ pub struct FetiFeti {
 }
 
 impl FetiFeti {
-    /// The linear method with its operators, for studies and checks.
+    /// The linear method with its operators, for studies and checks of this workspace.
+    #[doc(hidden)]
     pub fn method(&self) -> &LinearMethod {
         &self.method
     }
@@ -68,7 +68,7 @@ impl FetiFeti {
     /// Bad substructures, a body that nothing holds, or PETSc's own errors; the same on all ranks.
     pub fn new(
         session: &Session,
-        problem: Substructures,
+        problem: Problem,
         settings: impl Into<Settings>,
     ) -> Result<FetiFeti> {
         cite(session, CITATION)?;
@@ -94,7 +94,7 @@ impl FetiFeti {
     ///
     /// # Errors
     /// A body that nothing holds or that is pushed away for ever, gaps that contradict each other; PETSc's own errors.
-    pub fn solve(&self) -> Result<Solution> {
+    pub fn solve(&mut self) -> Result<Solution> {
         self.solve_from(None, &mut |_, _| Ok(()))
     }
 
@@ -104,7 +104,12 @@ impl FetiFeti {
     ///
     /// # Errors
     /// As [`FetiFeti::solve`], and those of `enough`.
-    pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
+    pub fn solve_until(&mut self, enough: &Judge) -> Result<Solution> {
+        self.judged(enough)
+    }
+
+    /// [`FetiFeti::solve_until`] for a host whose monitors look at the solver during the solve.
+    pub(crate) fn judged(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         self.check_idle()?;
         let found = self.method.solve(Some(enough))?;
@@ -117,6 +122,15 @@ impl FetiFeti {
     /// # Errors
     /// As [`FetiFeti::solve`], and those of `observe`.
     pub fn solve_from(
+        &mut self,
+        start: Option<&contact::State>,
+        observe: &mut contact::Observer,
+    ) -> Result<Solution> {
+        self.observed(start, observe)
+    }
+
+    /// [`FetiFeti::solve_from`] for a host whose monitors look at the solver during the solve.
+    pub(crate) fn observed(
         &self,
         start: Option<&contact::State>,
         observe: &mut contact::Observer,
@@ -193,7 +207,7 @@ impl FetiFeti {
     ///
     /// # Errors
     /// As [`FetiFeti::new`]; the solver then still has the old rows and works with them.
-    pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
+    pub fn set_rows(&mut self, rows: Vec<Row>) -> Result<()> {
         let _staged = self.setup_stage.scope()?;
         self.method.set_rows(rows)
     }
@@ -211,7 +225,7 @@ impl FetiFeti {
     pub fn renewed(
         self,
         numbers: Vec<Numbers>,
-        rows: Option<Vec<InterfaceRow>>,
+        rows: Option<Vec<Row>>,
     ) -> Result<Option<FetiFeti>> {
         let FetiFeti {
             method,
@@ -259,7 +273,7 @@ impl FetiFeti {
     ///
     /// # Errors
     /// PETSc's own.
-    pub fn deflate(&self) -> Result<()> {
+    pub fn deflate(&mut self) -> Result<()> {
         self.method.deflate()
     }
 
@@ -279,7 +293,7 @@ impl FetiFeti {
     ///
     /// # Errors
     /// PETSc's and SLEPc's own.
-    pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+    pub fn spectrum(&mut self) -> Result<Option<Spectrum>> {
         self.method.spectrum()
     }
 
@@ -324,7 +338,7 @@ impl FetiFeti {
     }
 
     /// The problem.
-    pub fn problem(&self) -> &Substructures {
+    pub fn problem(&self) -> &Problem {
         &self.method.problem
     }
 
@@ -338,7 +352,8 @@ impl FetiFeti {
         &self.method.ksp
     }
 
-    /// F, M⁻¹ and P for the rows that hold.
+    /// F, M⁻¹ and P for the rows that hold, for studies and checks of this workspace.
+    #[doc(hidden)]
     pub fn dual(&self) -> Ref<'_, Dual> {
         self.method.dual()
     }

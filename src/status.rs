@@ -6,6 +6,7 @@ use petsc::ConvergedReason;
 
 /// The reason why a solve stopped. It is displayed as PETSc names its reasons, such as `CONVERGED_RTOL`.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Status {
     /// The Krylov method's own reason.
     Krylov(ConvergedReason),

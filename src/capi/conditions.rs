@@ -4,7 +4,7 @@
 use super::handle::{alone, array, lent, list, not_null, starts, together, Handle};
 use super::numbering::Numbering;
 use super::object::Object;
-use super::rows::{pairs, row_kind, Origin, Row, Side};
+use super::rows::{pairs, row_kind, HostRow, Origin, Side};
 use crate::Result;
 use base::Fault;
 use petsc::raw;
@@ -161,7 +161,7 @@ fn contact_row(
     mut terms: Vec<(Numbering, u32, f64)>,
     gap: f64,
     number: c_int,
-) -> Result<Row> {
+) -> Result<HostRow> {
     terms.retain(|t| t.2 != 0.0);
     if terms.is_empty() || terms.iter().any(|t| !t.2.is_finite()) || !gap.is_finite() {
         return Err(Fault::Wrong.error(format!(
@@ -169,7 +169,7 @@ fn contact_row(
         )));
     }
     let kind = row_kind(number, || format!("contact row {r} is"))?;
-    Ok(Row {
+    Ok(HostRow {
         origin: Origin::Rows,
         terms,
         gap,
@@ -208,7 +208,7 @@ fn contact_pairs(
     second: (c_int, raw::IS),
     gap: *const f64,
     kind: c_int,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<HostRow>> {
     let kind = row_kind(kind, || "contact pairs are".into())?;
     let first = Side::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
     let second = Side::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;

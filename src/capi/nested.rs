@@ -14,7 +14,8 @@ pub struct Given {
 impl Given {
     /// Checks a vector against `layout`; `what` is its name in messages.
     ///
-    /// # Errors Another layout, or parts that do not fit the matrices; possibly on some ranks only.
+    /// # Errors
+    /// Another layout, or parts that do not fit the matrices; possibly on some ranks only.
     pub fn new(
         session: &Session,
         v: &PetscVec,

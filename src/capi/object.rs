@@ -6,7 +6,7 @@ use super::monitor::Monitor;
 use super::mortar::Mortar;
 use super::mortar_rows::{AtNodes, MortarRows};
 use super::nested::Given as GivenVector;
-use super::rows::Row;
+use super::rows::HostRow;
 use super::stack::{fits, Given, LocalMatrix, Stack, Told};
 use super::surface::Surface;
 use crate::embed::torn::spanned;
@@ -41,7 +41,7 @@ pub struct Object {
     pub held_values: Option<PetscVec>,
     pub primal: Vec<i32>,
     /// The rows that this rank gives, in their order.
-    pub rows: Vec<Row>,
+    pub rows: Vec<HostRow>,
     pub surfaces: Vec<Surface>,
     /// The pairs of surfaces that mortar rows join.
     pub mortars: Vec<Mortar>,

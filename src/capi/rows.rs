@@ -17,7 +17,7 @@ pub enum Origin {
 }
 
 /// A row as the host gave it.
-pub struct Row {
+pub struct HostRow {
     pub origin: Origin,
     /// Unknowns and coefficients.
     pub terms: Vec<(Numbering, u32, f64)>,
@@ -46,7 +46,8 @@ pub struct Side {
 impl Side {
     /// `matrix` is the index from C: negative for the numbering of all unknowns.
     ///
-    /// # Errors A matrix that does not exist, or a number that it does not have.
+    /// # Errors
+    /// A matrix that does not exist, or a number that it does not have.
     pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<Side> {
         let (numbering, n) = match usize::try_from(matrix) {
             Err(_) => (Numbering::All, None),
@@ -80,7 +81,7 @@ pub fn pairs(
     second: &Side,
     gap: &[f64],
     kind: RowKind,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<HostRow>> {
     let n = first.dofs.len();
     if second.dofs.len() != n {
         return Err(Fault::Sizes.error(format!(
@@ -101,7 +102,7 @@ pub fn pairs(
                 "contact pair {r} of rank {rank} has unknown {a} on both sides, expected different ones"
             )));
         }
-        rows.push(Row {
+        rows.push(HostRow {
             origin: Origin::Pairs,
             terms: vec![
                 (first.numbering, a as u32, 1.0),
@@ -117,12 +118,13 @@ pub fn pairs(
 impl Object {
     /// This rank's rows in the numbering of all unknowns.
     ///
-    /// # Errors Rows of matrices that no longer exist.
+    /// # Errors
+    /// Rows of matrices that no longer exist.
     pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
         let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
             Ok((self.number(whose, dof, "contact pair")?, c))
         };
-        let row = |row: &Row| {
+        let row = |row: &HostRow| {
             let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
             Ok(GivenRow {
                 terms: terms?,

@@ -8,7 +8,8 @@ use super::mortar_rows::{IsHeld, MortarRows};
 use super::object::Object;
 use crate::embed::states::states;
 use crate::embed::{Embedded, GivenRow, Local, SetUp};
-use crate::{MethodSettings, Result};
+use crate::settings::MethodSettings;
+use crate::Result;
 
 impl Object {
     /// Makes the solver if there is none; brings it up to date if the input has changed. Collective.

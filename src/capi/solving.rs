@@ -51,7 +51,8 @@ impl Object {
 
     /// The result of the last solve.
     ///
-    /// # Errors There was no solve.
+    /// # Errors
+    /// There was no solve.
     pub fn outcome(&self) -> Result<&Outcome> {
         let none = || {
             Fault::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before")
@@ -61,7 +62,8 @@ impl Object {
 
     /// The solver.
     ///
-    /// # Errors There is no solver yet.
+    /// # Errors
+    /// There is no solver yet.
     pub fn solver(&self) -> Result<&Embedded> {
         let none =
             || Fault::WrongState.error("there is no solver yet, expected FetiFetiSetUp before");

@@ -6,7 +6,7 @@
 
 use crate::feti::jump::blocks::Block;
 use crate::feti::operators::dual::Dual;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::{Error, Result};
 use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
@@ -16,11 +16,11 @@ use base::linalg::sorted::distinct;
 const CONTRADICTION: f64 = 1e-8;
 
 /// Returns an error that names the bodies and the place of the first contradiction. Collective.
-pub fn check(problem: &Substructures, dual: &Dual) -> Result<()> {
+pub fn check(problem: &Problem, dual: &Dual) -> Result<()> {
     dual.stiffness.session.agree(check_mine(problem, dual))
 }
 
-fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
+fn check_mine(problem: &Problem, dual: &Dual) -> Result<()> {
     let jump = &dual.stiffness.jump;
     for block in &jump.blocks {
         let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
@@ -64,7 +64,7 @@ fn contradicts(n: usize, bt: impl Fn(usize, usize) -> f64, c: &[f64], free: &[bo
 }
 
 /// The sentence about these rows of a block.
-fn contradiction(problem: &Substructures, block: &Block, rows: &[usize]) -> Error {
+fn contradiction(problem: &Problem, block: &Block, rows: &[usize]) -> Error {
     let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
     let bodies = distinct(block.bodies().iter().map(name));
     let place = match block.place(problem, rows) {

@@ -6,7 +6,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use parallel::exchange::{max_all, total};
 
@@ -32,7 +32,7 @@ pub struct Sizes {
 
 impl Sizes {
     /// The sizes of `problem`. Collective.
-    pub fn of(dual: &Dual, problem: &Substructures) -> Sizes {
+    pub fn of(dual: &Dual, problem: &Problem) -> Sizes {
         let locals = problem.local.iter().zip(&dual.stiffness.locals);
         let give = |(sub, local): (&Subdomain, &Scaled)| match local.stiffest() {
             stiff if stiff > 0.0 => sub.load() / stiff,

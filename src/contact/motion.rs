@@ -20,7 +20,7 @@ use crate::feti::projector::gram::FEW;
 use crate::feti::projector::held::{moved, moving, weakness};
 use crate::feti::projector::motion::Motion;
 use crate::feti::projector::rows::Rows;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::{Error, Result};
 use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
@@ -39,7 +39,7 @@ pub const BALANCE: f64 = 1e-9;
 ///
 /// # Errors
 /// As [`check`].
-pub fn check_few(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
+pub fn check_few(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
     if dual.natural.r <= FEW {
         check(problem, dual, load, &[])
     } else {
@@ -52,12 +52,7 @@ pub fn check_few(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Res
 ///
 /// # Errors
 /// As [`check`].
-pub fn check_many(
-    problem: &Substructures,
-    dual: &Dual,
-    load: &KernelLoad,
-    lambda: &[f64],
-) -> Result<()> {
+pub fn check_many(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
     if dual.natural.r > FEW {
         check(problem, dual, load, lambda)
     } else {
@@ -70,7 +65,7 @@ pub fn check_many(
 ///
 /// # Errors
 /// As [`check`], and bodies that nothing holds.
-pub fn check_held(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<()> {
+pub fn check_held(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
     let held = dual.natural.check_held(problem, &dual.stiffness, load);
     if held.is_err() {
         check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
@@ -83,7 +78,7 @@ pub fn check_held(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Re
 ///
 /// # Errors
 /// Such bodies; PETSc's own errors.
-fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
+fn check(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
     let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
     if natural.r == 0 {
         return Ok(());
@@ -110,12 +105,7 @@ fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad, lambda: &[f64]
 
 /// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above
 /// `tolerance`.
-pub fn pushed_away(
-    problem: &Substructures,
-    dual: &Dual,
-    rest: &Motion,
-    tolerance: f64,
-) -> Result<()> {
+pub fn pushed_away(problem: &Problem, dual: &Dual, rest: &Motion, tolerance: f64) -> Result<()> {
     let left = rest.largest();
     if left <= tolerance {
         return Ok(());

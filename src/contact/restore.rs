@@ -13,7 +13,7 @@ use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::motion::Motion;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
@@ -29,7 +29,7 @@ const AGAINST: f64 = 1e-8;
 /// # Errors
 /// Bodies that the load pushes away for ever: no row opposes a driven motion.
 pub fn restore(
-    problem: &Substructures,
+    problem: &Problem,
     dual: &Dual,
     active: &mut [bool],
     score: &dyn Fn(usize) -> f64,

@@ -5,6 +5,7 @@ use petsc::{named, Options};
 
 /// The method of the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ContactType {
     /// Primal-dual active set; damped Newton steps on the augmented Lagrangian where its sets wander.
     ActiveSet,
@@ -22,6 +23,7 @@ named!(ContactType {
 
 /// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ContactSettings {
     /// `fetifeti_contact_type`.
     pub kind: ContactType,

@@ -11,6 +11,7 @@ use parallel::exchange::sum_all;
 
 /// Record of one step of the outer loop.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// The method of the step.
     pub method: ContactType,
@@ -39,6 +40,7 @@ pub struct Step {
 
 /// The state of the outer loop, sufficient to continue it. Vectors are this rank's part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct State {
     /// Multipliers of the owned rows.
     pub lambda: Vec<f64>,
@@ -76,8 +78,18 @@ impl State {
         }
     }
 
+    /// This state with other rows: their multipliers, and whether each is to hold and held in the step before.
+    pub fn on_rows(&self, lambda: Vec<f64>, active: Vec<bool>, before: Vec<bool>) -> State {
+        State {
+            lambda,
+            active,
+            before,
+            ..self.clone()
+        }
+    }
+
     /// The start of a loop: λ = 0, and all candidate rows hold.
-    pub fn cold(jump: &Jump) -> State {
+    pub(crate) fn cold(jump: &Jump) -> State {
         State::warm(vec![0.0; jump.n_owned], &jump.initial)
     }
 }
@@ -99,6 +111,7 @@ pub(super) fn changes(comm: &SimpleCommunicator, before: &[bool], now: &[bool]) 
 
 /// The progress of the active-set method, measured by the number of rows on the wrong side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Progress {
     /// The smallest number of wrong rows so far; `None` before the first step.
     fewest: Option<usize>,

@@ -10,7 +10,7 @@ use super::solver::{Embedded, GivenResults, Reached};
 use super::torn::GivenRow;
 use super::touched::Here;
 use crate::feti::Numbers;
-use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
 use crate::{FetiFeti, Result};
 use base::linalg::csr::Csr;
 use base::ErrorKind;
@@ -23,7 +23,7 @@ struct Replaced {
     given: Vec<GivenRow>,
     n_ties: usize,
     /// The rows of the solver.
-    rows: Vec<InterfaceRow>,
+    rows: Vec<Row>,
     /// `None` where nothing has been solved.
     start: Option<Start>,
 }
@@ -168,7 +168,7 @@ impl Embedded {
     }
 
     /// Where the loop with other rows starts. Collective.
-    fn start(&self, contact: &Contact, given: &[GivenRow], ties: &[InterfaceRow]) -> Start {
+    fn start(&self, contact: &Contact, given: &[GivenRow], ties: &[Row]) -> Start {
         let empty = (Vec::new(), Vec::new(), GivenResults::default());
         let reached = self.reached.borrow();
         let (inside, of_ties, results) = reached.as_ref().map_or(empty, |r| {

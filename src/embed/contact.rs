@@ -9,7 +9,7 @@ use super::known_dofs::KnownDofs;
 use super::placed::Placed;
 use super::torn::GivenRow;
 use super::touched::{Here, Touched};
-use crate::substructures::{InterfaceRow, RowKind};
+use crate::substructures::{Row, RowKind};
 use crate::{Error, Result};
 use parallel::exchange::{any, exchange_words, total};
 use petsc::Session;
@@ -19,7 +19,7 @@ struct Taken {
     /// The rank that gave it, and its number among the rows given there.
     from: (usize, usize),
     /// The row as the method gets it.
-    row: InterfaceRow,
+    row: Row,
     /// (place in the list of known dofs, coefficient) of its terms at known dofs.
     known: Vec<(usize, f64)>,
 }
@@ -102,7 +102,7 @@ impl Contact {
     }
 
     /// This rank's rows for the method.
-    pub fn rows(&self) -> impl Iterator<Item = InterfaceRow> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = Row> + '_ {
         self.taken.iter().map(|t| t.row.clone())
     }
 

@@ -1,7 +1,7 @@
-//! From subdomain matrices that other programs assembled to [`Substructures`](crate::Substructures), and back.
+//! From subdomain matrices that other programs assembled to [`Problem`](crate::Problem), and back.
 //!
 //! ```text
-//! MATIS ─> Torn ─> states ─> parts ─> sharing ─> bodies ─> classes, hold ─> Substructures ─> FetiFeti
+//! MATIS ─> Torn ─> states ─> parts ─> sharing ─> bodies ─> classes, hold ─> Problem ─> FetiFeti
 //! ```
 //!
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. The other data of the method are

@@ -3,7 +3,7 @@
 use super::parts::body_dof;
 use super::torn::GivenRow;
 use super::touched::{Holder, Touched};
-use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
 use std::collections::BTreeMap;
 
 /// A row with at least one unknown.
@@ -113,7 +113,7 @@ impl Placed {
 
     /// The row as the method gets it, for a problem of `n_global` dofs. Its label has its bodies, and the first unknown
     /// on each of its two sides.
-    pub fn row(&self, n_global: usize) -> InterfaceRow {
+    pub fn row(&self, n_global: usize) -> Row {
         let nodes = self.unknown().map(|(body, dof, _)| BodyNode {
             body: body as usize,
             node: dof as usize,
@@ -125,7 +125,7 @@ impl Placed {
             None => RowSource::Obstacle(self.number),
         };
         let terms = self.unknown();
-        InterfaceRow {
+        Row {
             terms: terms
                 .map(|(body, dof, c)| (body_dof(n_global, body as usize, dof), c))
                 .collect(),

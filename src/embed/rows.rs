@@ -4,7 +4,7 @@ use super::bodies::Bodies;
 use super::contact::Contact;
 use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
-use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
 use base::linalg::sorted::distinct;
 use parallel::exchange::exchange_words;
 use petsc::Session;
@@ -18,8 +18,8 @@ pub fn rows(
     sharers: &Sharers,
     bodies: &Bodies,
     contact: &Contact,
-) -> Vec<InterfaceRow> {
-    let tie = |a: u64, b: u64, dof: u32| InterfaceRow {
+) -> Vec<Row> {
+    let tie = |a: u64, b: u64, dof: u32| Row {
         terms: vec![
             (body_dof(n_global, a as usize, dof), 1.0),
             (body_dof(n_global, b as usize, dof), -1.0),

@@ -25,7 +25,7 @@ use crate::feti::krylov::solve::Look;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
-use crate::substructures::{RowState, SolvedRow, Substructures};
+use crate::substructures::{Problem, RowState, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::exchange::total;
 use parallel::halo::Halo;
@@ -188,7 +188,7 @@ impl Embedded {
             };
             subdomain(torn.n_global, part, &shape, known)
         });
-        let problem = Substructures {
+        let problem = Problem {
             n_bodies,
             n_subdomains: sharers.n_subdomains,
             // Its ρ is the diagonal of K already.
@@ -230,7 +230,8 @@ impl Embedded {
     /// iteration that may have nothing to do, `enough` is called: it returns the factor by which the residual should
     /// fall further, or `None`. Collective.
     ///
-    /// # Errors A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
+    /// # Errors
+    /// A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
     pub fn solve(
         &self,
         b: &PetscVec,
@@ -238,7 +239,7 @@ impl Embedded {
         enough: &dyn Fn(&PetscVec, Look) -> Result<Option<f64>>,
     ) -> Result<Outcome> {
         self.load(b, None)?;
-        let solution = self.solver().solve_until(&|u, look| {
+        let solution = self.solver().judged(&|u, look| {
             self.put_together(u, x)?;
             enough(x, look)
         })?;
@@ -262,7 +263,7 @@ impl Embedded {
         self.load(b, held)?;
         let start = self.reached.take().map(|reached| reached.state);
         let start = start.filter(|_| self.contact.inequalities);
-        let solution = self.solver().solve_from(start.as_ref(), observe)?;
+        let solution = self.solver().observed(start.as_ref(), observe)?;
         self.put_together(&solution.u, x)?;
         let ties = solution.rows()[..self.n_ties].iter();
         self.reached.replace(Some(Reached {

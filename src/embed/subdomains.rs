@@ -1,4 +1,4 @@
-//! Subdomains of [`Substructures`](crate::Substructures), from parts, classes and additional constraints.
+//! Subdomains of [`Problem`](crate::Problem), from parts, classes and additional constraints.
 
 use super::classes::Class;
 use super::hold::Shape;

@@ -14,6 +14,7 @@ use parallel::exchange::sum_all;
 
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Facts {
     /// The weights of the scaled jump operator.
     pub scaling: Scaling,

@@ -12,7 +12,7 @@ use super::operators::dual::Dual;
 use super::settings::MethodSettings;
 use super::setup::Made;
 use super::subdomain::kept::Kept;
-use crate::substructures::{InterfaceRow, Substructures};
+use crate::substructures::{Problem, Row};
 use crate::Result;
 use cholesky::interior::Analysed;
 use parallel::exchange::any;
@@ -21,7 +21,7 @@ use petsc::{Ksp, Session};
 /// The operators, the Krylov method and facts about the problem.
 pub struct LinearMethod {
     pub(crate) session: Session,
-    pub(crate) problem: Substructures,
+    pub(crate) problem: Problem,
     /// With options applied.
     pub(crate) settings: MethodSettings,
     /// The dual problem as the Krylov method works on it.
@@ -42,11 +42,19 @@ pub struct LinearMethod {
 
 /// Other numbers for the matrix of a subdomain, whose pattern stays.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Numbers {
     /// The entries of K in their order.
     pub k: Vec<f64>,
     /// ρ of each dof ([`Subdomain::rho`](crate::Subdomain::rho)).
     pub rho: Vec<f64>,
+}
+
+impl Numbers {
+    /// The entries of K in their order, and ρ of each dof.
+    pub fn new(k: Vec<f64>, rho: Vec<f64>) -> Numbers {
+        Numbers { k, rho }
+    }
 }
 
 impl LinearMethod {
@@ -56,7 +64,7 @@ impl LinearMethod {
     }
 
     /// The substructures that it was set up for.
-    pub fn problem(&self) -> &Substructures {
+    pub fn problem(&self) -> &Problem {
         &self.problem
     }
 
@@ -88,7 +96,7 @@ impl LinearMethod {
     ///
     /// # Errors
     /// Bad rows, a body that nothing holds, PETSc's own errors; the same on all ranks.
-    pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
+    pub fn set_rows(&mut self, rows: Vec<Row>) -> Result<()> {
         let adapted = self.facts.adaptive_constraints.iter().any(|n| *n > 0);
         // Adaptive constraints have changed the operators of subdomains.
         let kept = self.kept();
@@ -115,7 +123,7 @@ impl LinearMethod {
     pub fn renewed(
         self,
         numbers: Vec<Numbers>,
-        rows: Option<Vec<InterfaceRow>>,
+        rows: Option<Vec<Row>>,
     ) -> Result<Option<LinearMethod>> {
         let session = self.session.clone();
         let kept = self.kept().patterns();

@@ -27,8 +27,5 @@ pub use krylov::tally::{Communication, PerIteration};
 pub use method::LinearMethod;
 pub use method::Numbers;
 pub use projector::freedom::FreeMotion;
-pub use settings::{
-    Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
-    Scaling,
-};
+pub use settings::{MethodSettings, Primal};
 pub use spectrum::Spectrum;

@@ -8,6 +8,7 @@ use petsc::{named, Options, Session};
 
 /// The preconditioner of the dual problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PcType {
     /// No preconditioner: the projector alone.
     None,
@@ -28,6 +29,7 @@ impl PcType {
 
 /// The weights D of the scaled jump operator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Scaling {
     /// D = 1: every copy counts the same.
     Multiplicity,
@@ -42,6 +44,7 @@ pub enum Scaling {
 
 /// The coarse functions in Z_c. In the plane there are only vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CoarseFunctions {
     /// Functions of vertices and of averages.
     All,
@@ -51,6 +54,7 @@ pub enum CoarseFunctions {
 
 /// The precision of M⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Precision {
     /// Everything in double precision.
     Double,
@@ -60,6 +64,7 @@ pub enum Precision {
 
 /// The form in which S and T are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Operators {
     /// The form that takes less time within the available memory.
     Auto,
@@ -71,6 +76,7 @@ pub enum Operators {
 
 /// The bound on the spectrum where coefficients jump inside bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Adaptive {
     /// No bound.
     Off,
@@ -109,6 +115,7 @@ impl Adaptive {
 
 /// The kinds of primal constraints inside a body; at least one of them is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Primal {
     /// Values at vertices.
     pub vertices: bool,
@@ -164,6 +171,7 @@ impl Primal {
 
 /// The weight Q of the projector P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ProjectorKind {
     /// Q = I, as in \[Lee\].
     Identity,
@@ -191,14 +199,12 @@ named!(ProjectorKind {
 /// Settings of the linear method. Krylov settings live in the KSP (`fetifeti_ksp_`).
 ///
 /// ```
-/// use fetifeti::{MethodSettings, PcType, Primal, ProjectorKind};
+/// use fetifeti::settings::{MethodSettings, PcType, Primal, ProjectorKind};
 ///
-/// let settings = MethodSettings {
-///     pc_type: Some(PcType::CoarseCorrected),
-///     primal: Primal::parse("vertices, faces").expect("names of constraints"),
-///     rtol: 1e-10,
-///     ..MethodSettings::default()
-/// };
+/// let settings = MethodSettings::default()
+///     .pc_type(PcType::CoarseCorrected)
+///     .primal(Primal::parse("vertices, faces").expect("names of constraints"))
+///     .rtol(1e-10);
 /// assert_eq!(settings.primal.name(), "vertices,faces");
 /// assert_eq!(settings.projector, ProjectorKind::Auto);
 /// // What the option takes: -fetifeti_pc_type coarse_corrected.
@@ -206,6 +212,7 @@ named!(ProjectorKind {
 /// assert_eq!(Primal::parse("corners"), None);
 /// ```
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct MethodSettings {
     /// `fetifeti_pc_type`; `None` chooses coarse_corrected if there are several bodies, a body has several subdomains
     /// and the model of cost favours it; dirichlet otherwise.
@@ -214,7 +221,7 @@ pub struct MethodSettings {
     /// if coarse_corrected is asked for.
     pub lifting: Option<CoarseFunctions>,
     /// `fetifeti_scaling`; `None` chooses stiffness where meshes in space are cut
-    /// ([`Substructures::ragged`](crate::Substructures::ragged)), rho otherwise.
+    /// ([`Problem::ragged`](crate::Problem::ragged)), rho otherwise.
     pub scaling: Option<Scaling>,
     /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
     pub gamma: f64,

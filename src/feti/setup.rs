@@ -32,7 +32,7 @@ use super::subdomain::factor::{factor, no_factor, Factored};
 use super::subdomain::kept::Kept;
 use super::subdomain::scaled::Scaled;
 use crate::feti::primal::refinement;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use cholesky::interior::Analysed;
 use parallel::clock::{self, Phase};
@@ -65,7 +65,7 @@ impl LinearMethod {
     /// Bad substructures, a body that nothing holds, or PETSc's own errors; the same on all ranks.
     pub fn new(
         session: &Session,
-        problem: Substructures,
+        problem: Problem,
         settings: MethodSettings,
     ) -> Result<LinearMethod> {
         LinearMethod::keeping(session, problem, settings, None)
@@ -79,7 +79,7 @@ impl LinearMethod {
     /// As [`LinearMethod::new`].
     pub(super) fn keeping(
         session: &Session,
-        problem: Substructures,
+        problem: Problem,
         settings: MethodSettings,
         kept: Option<&Kept>,
     ) -> Result<LinearMethod> {
@@ -117,7 +117,7 @@ impl Made {
     /// As [`LinearMethod::new`].
     pub(super) fn new(
         session: &Session,
-        problem: &Substructures,
+        problem: &Problem,
         settings: &MethodSettings,
         kept: Option<&Kept>,
     ) -> Result<Made> {
@@ -190,7 +190,7 @@ impl Made {
 /// Factors the subdomains of this rank and adds the adaptive primal constraints. Collective.
 fn subdomains(
     session: &Session,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     jump: &mut Jump,
     team: &Team,
@@ -229,7 +229,7 @@ fn subdomains(
 /// S̃⁺: the subdomains and the primal problem of their bodies. Collective.
 fn stiffness(
     session: &Session,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     jump: Jump,
     locals: Vec<Scaled>,

@@ -2,6 +2,7 @@
 
 /// The smallest and the largest eigenvalue of an operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Spectrum {
     /// Smallest eigenvalue outside the kernel.
     pub lambda_min: f64,

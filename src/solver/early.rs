@@ -7,6 +7,7 @@
 
 use super::FetiFeti;
 use crate::contact::{self, ContactType, State};
+use crate::solution::Discretisation;
 use crate::{Result, Solution};
 use petsc::Options;
 
@@ -26,9 +27,6 @@ const AIM: f64 = 0.5;
 /// Factors of one step, from the smallest to the largest.
 const FACTORS: [f64; 2] = [1e-3, 0.3];
 
-/// Estimates the discretisation error of displacements in the energy norm. Collective.
-pub type Discretisation<'a> = dyn FnMut(&[Vec<f64>]) -> Result<f64> + 'a;
-
 impl FetiFeti {
     /// Solves as [`FetiFeti::solve_from`] until the bound of the error in the energy norm is at most a tenth of the
     /// discretisation error, which `discretisation` estimates, or until `fetifeti_ksp_rtol` (1e-10 if it is not set) is
@@ -38,7 +36,7 @@ impl FetiFeti {
     /// # Errors
     /// As [`FetiFeti::solve_from`], and those of `discretisation`.
     pub fn solve_early(
-        &self,
+        &mut self,
         start: Option<&State>,
         observe: &mut contact::Observer,
         discretisation: &mut Discretisation,

@@ -20,6 +20,7 @@ use parallel::exchange::gather_all;
 ///
 /// The motions of a body are orthonormal over its degrees of freedom.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Idle {
     /// The number of the motion in its body.
     pub number: u32,
@@ -33,6 +34,20 @@ pub struct Idle {
     pub strain: f64,
     /// The message where a load drives the motion: a sentence.
     pub what: Arc<str>,
+}
+
+impl Idle {
+    /// Motion `number` of its body with this `strain`, and the message where a load drives it; so far without dofs.
+    pub fn new(number: u32, strain: f64, what: Arc<str>) -> Idle {
+        Idle {
+            number,
+            dofs: Vec::new(),
+            values: Vec::new(),
+            shares: Vec::new(),
+            strain,
+            what,
+        }
+    }
 }
 
 /// The load does work on a motion only if that is more than this part of what it could be, |fᵀv| beside ‖f‖ ‖v‖.

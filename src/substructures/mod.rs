@@ -1,13 +1,14 @@
 //! The interface between problems and the method: subdomain matrices, and the rows of B_gl that connect bodies.
 //!
-//! Scenes and MATIS matrices both become [`Substructures`]; the method does not know where the matrices come from. All
+//! A scene and a MATIS matrix each become a [`Problem`]; the method does not know where the matrices come from. All
 //! data are distributed: a rank holds its own subdomains and provides its own rows.
 
+mod build;
 pub mod idle;
 mod rows;
 
 pub use idle::Idle;
-pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow};
+pub use rows::{BodyNode, Row, RowKind, RowLabel, RowSource, RowState, SolvedRow};
 
 use std::sync::Arc;
 
@@ -18,6 +19,7 @@ use base::Location;
 ///
 /// n is the number of its free degrees of freedom; "local dof" is an index in 0..n.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Subdomain {
     /// Global index of the subdomain, unique over all bodies and ranks, in 0..n_subdomains.
     pub index: usize,
@@ -65,6 +67,7 @@ pub enum EntityKind {
 /// two subdomains meets the surface of their body are entities too, without held dofs. Entities of a subdomain have no
 /// dof in common. An entity that only one subdomain lists constrains nothing.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Entity {
     /// Edge or face.
     pub kind: EntityKind,
@@ -81,47 +84,23 @@ pub struct Entity {
 /// press against a wall at a distance of 0.1.
 ///
 /// ```
-/// use fetifeti::{BodyNode, Csr, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures};
+/// use fetifeti::problem::{BodyNode, Csr, RowLabel, RowSource};
+/// use fetifeti::{Problem, Row, Subdomain};
 ///
-/// let spring = |body: usize, k: Csr, f: Vec<f64>, dofs: Vec<u64>| Subdomain {
-///     index: body,
-///     body,
-///     rho: vec![1.0; f.len()],
-///     primal: Vec::new(),       // one subdomain: nothing to hold together
-///     entities: Vec::new(),
-///     near_kernel: None,        // kernels are found from the matrices
-///     coordinates: None,
-///     idle: Vec::new(),         // no motion is held artificially
-///     k: k.into(),
-///     f,
-///     dofs,
-/// };
 /// let fixed = Csr::from_triplets(1, &[(0, 0, 1.0)]);
 /// let free = Csr::from_triplets(2, &[(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)]);
-/// let row = |block, terms: &[(u64, f64)], gap, kind, source| InterfaceRow {
-///     terms: terms.to_vec(),
-///     gap,
-///     kind,
-///     holds: true,
-///     block,                    // rows that share a dof have the same block
-///     rounding: 0.0,            // directions are exact
-///     label: RowLabel::new(source, [Some(BodyNode { body: 1, node: 0 }), None]),
-/// };
-/// let problem = Substructures {
-///     n_bodies: 2,
-///     n_subdomains: 2,
-///     ragged: false,
-///     body_names: vec!["fixed".into(), "free".into()],
-///     weak: Vec::new(),
-///     local: vec![
-///         spring(0, fixed, vec![0.0], vec![0]),
-///         spring(1, free, vec![0.0, 1.0], vec![1, 2]),
-///     ],
-///     rows: vec![
-///         row(0, &[(0, 1.0), (1, -1.0)], 0.0, RowKind::Equality, RowSource::Interface(0)),
-///         row(1, &[(2, 1.0)], 0.1, RowKind::Inequality, RowSource::Obstacle(0)),
-///     ],
-/// };
+/// let end = BodyNode { body: 1, node: 1 };
+/// let problem = Problem::new(["fixed", "free"], 2)
+///     .with_subdomains([
+///         Subdomain::new(0, 0, fixed, vec![0.0], vec![0]),
+///         Subdomain::new(1, 1, free, vec![0.0, 1.0], vec![1, 2]),
+///     ])
+///     .with_rows([
+///         Row::equality([(0, 1.0), (1, -1.0)], 0.0),
+///         Row::inequality([(2, 1.0)], 0.1)
+///             .in_block(1)          // rows that share a dof have the same block; these two share none
+///             .with_label(RowLabel::new(RowSource::Obstacle(0), [Some(end), None])),
+///     ]);
 /// // A floating body's matrix has a kernel: here the translation.
 /// let mut force = [0.0; 2];
 /// problem.local[1].k.mul(&[1.0, 1.0], &mut force);
@@ -130,7 +109,8 @@ pub struct Entity {
 ///
 /// [`FetiFeti`](crate::FetiFeti) takes it from here.
 #[derive(Debug, Clone)]
-pub struct Substructures {
+#[non_exhaustive]
+pub struct Problem {
     /// Number of bodies over all ranks.
     pub n_bodies: usize,
     /// Number of subdomains over all ranks.
@@ -147,10 +127,10 @@ pub struct Substructures {
     /// This rank's subdomains, in increasing order of `index`.
     pub local: Vec<Subdomain>,
     /// The rows that this rank provides. Each row of the problem is provided by exactly one rank.
-    pub rows: Vec<InterfaceRow>,
+    pub rows: Vec<Row>,
 }
 
-impl Substructures {
+impl Problem {
     /// These bodies as the place of an error.
     pub(crate) fn location(&self, bodies: &[u32]) -> Location {
         let names = bodies.iter().map(|&b| &self.body_names[b as usize]);

@@ -10,6 +10,7 @@ use parallel::exchange::{exchange, gather_all, Record};
 
 /// The kind of a row: an equation, or an inequality that the contact loop may switch off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RowKind {
     /// (B u)_r = c_r.
     Equality,
@@ -19,7 +20,8 @@ pub enum RowKind {
 
 /// One row of B_gl: Σ coefficient · u(body dof), with right-hand side c.
 #[derive(Debug, Clone)]
-pub struct InterfaceRow {
+#[non_exhaustive]
+pub struct Row {
     /// (body dof, coefficient) pairs; for matching scalar meshes (a, +1), (b, −1).
     pub terms: Vec<(u64, f64)>,
     /// Right-hand side c_r (the gap; zero on tied faces).
@@ -49,7 +51,8 @@ pub struct BodyNode {
     pub node: usize,
 }
 
-/// The origin of a row, in the numbering of the problem.
+/// The origin of a row, in the numbering of the problem. There are no others: whoever draws rows or sums them up must
+/// know each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RowSource {
     /// Two bodies that meet; in a scene the index into `Scene::interfaces`.
@@ -62,6 +65,7 @@ pub enum RowSource {
 
 /// The origin of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RowLabel {
     /// The interface or obstacle of the row.
     pub source: RowSource,
@@ -89,10 +93,23 @@ impl RowLabel {
             area: 0.0,
         }
     }
+
+    /// This label with the position of the node that carries the multiplier, and its parameters along the side.
+    pub fn at(mut self, point: [f64; 3], t: [f64; 2]) -> RowLabel {
+        (self.point, self.t) = (point, t);
+        self
+    }
+
+    /// This label with the unit vector n out of the first body and the nodal area, 0 where none is known.
+    pub fn along(mut self, normal: [f64; 3], area: f64) -> RowLabel {
+        (self.normal, self.area) = (normal, area);
+        self
+    }
 }
 
 /// The state of a row after a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RowState {
     /// An inequality that holds as an equation: the sides are in contact.
     Holds,
@@ -104,6 +121,7 @@ pub enum RowState {
 
 /// A row of B_gl after a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SolvedRow {
     /// Its origin.
     pub label: RowLabel,
@@ -121,7 +139,7 @@ pub struct SolvedRow {
 
 impl SolvedRow {
     /// The row with this multiplier and B u − c = `excess`; `holds` is its state.
-    pub(crate) fn new(row: &InterfaceRow, multiplier: f64, excess: f64, holds: bool) -> SolvedRow {
+    pub(crate) fn new(row: &Row, multiplier: f64, excess: f64, holds: bool) -> SolvedRow {
         SolvedRow {
             label: row.label,
             kind: row.kind,

@@ -41,7 +41,7 @@ fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
     let text = text.into();
     with_session(move |session| {
         let direct = Direct::new(Scene::parse("s.toml", &text).expect(name));
-        let solver = direct.solver(session, &tight());
+        let mut solver = direct.solver(session, &tight());
         let facts = solver.facts();
         assert_eq!(
             facts.multipliers_local + facts.multipliers_active,

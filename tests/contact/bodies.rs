@@ -5,7 +5,7 @@ use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
 use base::Error;
-use fetifeti::contact::ContactType;
+use fetifeti::settings::ContactType;
 use petsc::Session;
 use scene::Scene;
 

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use crate::support::sample::{all_cases, sample};
 use crate::support::session::with_session;
-use fetifeti::{FetiFeti, MethodSettings, Solution};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{FetiFeti, Solution};
 use petsc::Session;
 use scene::Scene;
 
@@ -45,12 +46,8 @@ fn examples(large: bool) -> Vec<(String, Scene)> {
 
 fn solved(session: &Session, scene: &Scene, rtol: f64, certify: bool) -> (FetiFeti, Solution) {
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let settings = MethodSettings {
-        rtol,
-        certify,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings).expect("set up");
+    let settings = MethodSettings::default().rtol(rtol).certify(certify);
+    let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
     let solution = solver.solve().expect("an end");
     (solver, solution)
 }

@@ -6,7 +6,7 @@ use crate::support::session::with_session;
 use crate::support::{contact_judge, elastic_scene, mpi};
 use base::Error;
 use elastic_scene::{case, Case, Fate};
-use fetifeti::contact::ContactType;
+use fetifeti::settings::ContactType;
 use petsc::Session;
 
 const KINDS: [ContactType; 3] = [

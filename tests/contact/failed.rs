@@ -3,8 +3,9 @@
 use crate::support::checks::near;
 use crate::support::session::with_session;
 use base::Error;
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, MethodSettings, Settings, Spectrum};
+use fetifeti::settings::{ContactType, MethodSettings};
+use fetifeti::solution::Spectrum;
+use fetifeti::{FetiFeti, Settings};
 use petsc::Session;
 use scene::Scene;
 
@@ -19,10 +20,7 @@ const BLOCKS: &str = "title = \"blocks\"\nphysics = \"elasticity\"\n\
 fn solver(session: &Session, kind: ContactType) -> FetiFeti {
     let scene = Scene::parse("blocks.toml", BLOCKS).expect("a good scene");
     let problem = scene.substructures(&|_| true).expect("a good scene");
-    let mut settings = Settings::from(MethodSettings {
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    });
+    let mut settings = Settings::from(MethodSettings::default().rtol(1e-10));
     settings.contact.kind = kind;
     FetiFeti::new(session, problem, settings).expect("the set-up works")
 }
@@ -63,12 +61,12 @@ fn a_loop_that_is_ended_leaves_the_operators_as_they_were() {
             ContactType::AugmentedLagrangian,
             ContactType::Smalbe,
         ] {
-            let solver = solver(session, kind);
-            let spectrum = || -> Spectrum {
+            let mut solver = solver(session, kind);
+            let spectrum = |solver: &mut FetiFeti| -> Spectrum {
                 let found = solver.spectrum().expect("SLEPc finds it");
                 found.expect("there are multipliers")
             };
-            let before = spectrum();
+            let before = spectrum(&mut solver);
             for last in 1..=2 {
                 let mut steps = 0;
                 let ended = solver.solve_from(None, &mut |_, _| {
@@ -84,7 +82,7 @@ fn a_loop_that_is_ended_leaves_the_operators_as_they_were() {
                     ended.to_string().contains("that is enough"),
                     "{kind:?}: {ended}"
                 );
-                let after = spectrum();
+                let after = spectrum(&mut solver);
                 let what = format!("{kind:?}, step {last}: {before:?}, then {after:?}");
                 assert!(near(after.lambda_max, before.lambda_max, 1e-6), "{what}");
                 assert!(near(after.lambda_min, before.lambda_min, 1e-6), "{what}");
@@ -97,7 +95,7 @@ fn a_loop_that_is_ended_leaves_the_operators_as_they_were() {
 #[test]
 fn an_estimate_that_fails_leaves_the_tolerance() {
     with_session(|session| {
-        let solver = solver(session, ContactType::ActiveSet);
+        let mut solver = solver(session, ContactType::ActiveSet);
         let fails = solver.solve_early(None, &mut |_, _| Ok(()), &mut |_| {
             Err(Error::input("no estimate"))
         });

@@ -8,8 +8,8 @@ use crate::support::rng::Rng;
 use crate::support::sample::sample;
 use crate::support::session::with_session;
 use crate::support::wall::wall;
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use fetifeti::settings::{ContactType, MethodSettings};
+use fetifeti::{FetiFeti, Settings, Solution};
 use lab::study::walls::{self, FAMILIES};
 use petsc::Session;
 use scene::Scene;
@@ -39,12 +39,9 @@ fn solution(session: &Session, scene: &Scene, kind: ContactType, rtol: f64) -> S
     let problem = scene
         .substructures(&|s| mine.contains(&s))
         .expect("a good scene");
-    let mut settings = Settings::from(MethodSettings {
-        rtol,
-        ..MethodSettings::default()
-    });
+    let mut settings = Settings::from(MethodSettings::default().rtol(rtol));
     settings.contact.kind = kind;
-    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+    let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
     let solution = solver.solve().expect("the scene has a solution");
     assert!(solution.converged(), "{}", solution.status);
     solution

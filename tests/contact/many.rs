@@ -7,8 +7,8 @@ use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
 use base::{Error, Result};
 use contact_judge::How;
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, ProjectorKind, Settings};
+use fetifeti::settings::{ContactType, ProjectorKind};
+use fetifeti::{FetiFeti, Settings};
 use petsc::Session;
 use scene::Scene;
 
@@ -131,7 +131,7 @@ fn deflation_is_declined(session: &Session) -> Result<()> {
         let mut settings = Settings::default();
         settings.method.rtol = 1e-9;
         let rows = scene.substructures(&|s| share.contains(&s))?;
-        let solver = FetiFeti::new(session, rows, settings)?;
+        let mut solver = FetiFeti::new(session, rows, settings)?;
         if deflate {
             solver.deflate()?;
         }

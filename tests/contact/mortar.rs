@@ -2,8 +2,8 @@
 
 use crate::support::session::with_session;
 use base::Result;
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use fetifeti::settings::{ContactType, MethodSettings};
+use fetifeti::{FetiFeti, Settings, Solution};
 use lab::study::hard_cases::trackers;
 use scene::Scene;
 
@@ -12,10 +12,7 @@ fn solve(text: &str, kind: ContactType) -> Result<(Scene, Solution)> {
     let scene = Scene::parse("s.toml", text)?;
     let problem = scene.substructures(&|_| true)?;
     let solution = with_session(move |session| {
-        let mut settings = Settings::from(MethodSettings {
-            rtol: 1e-10,
-            ..MethodSettings::default()
-        });
+        let mut settings = Settings::from(MethodSettings::default().rtol(1e-10));
         settings.contact.kind = kind;
         FetiFeti::new(session, problem, settings)?.solve()
     })?;

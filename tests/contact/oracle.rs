@@ -4,8 +4,9 @@ use crate::support::checks::number;
 use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::{mpi, program};
-use fetifeti::contact::{self, ContactType};
-use fetifeti::{FetiFeti, MethodSettings, RowState, Settings, Solution};
+use fetifeti::settings::{ContactSettings, ContactType, MethodSettings};
+use fetifeti::solution::RowState;
+use fetifeti::{FetiFeti, Settings, Solution};
 use mpi::Scratch;
 use petsc::Session;
 use program::run_fetifeti;
@@ -102,17 +103,9 @@ fn by_the_program_on_one_two_and_four_ranks() {
 
 fn solve(session: &Session, scene: &Scene, kind: ContactType, rtol: f64) -> (FetiFeti, Solution) {
     let problem = scene.substructures(&|_| true).expect("a good scene");
-    let settings = Settings {
-        method: MethodSettings {
-            rtol,
-            ..MethodSettings::default()
-        },
-        contact: contact::ContactSettings {
-            kind,
-            ..contact::ContactSettings::default()
-        },
-    };
-    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+    let settings = Settings::from(MethodSettings::default().rtol(rtol))
+        .contact(ContactSettings::default().kind(kind));
+    let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
     let solution = solver.solve().expect("the problem can be solved");
     (solver, solution)
 }

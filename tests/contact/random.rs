@@ -6,7 +6,7 @@ use crate::support::{assembled, contact_judge, mpi, random_scene};
 use assembled::compare::Agreement;
 use base::Error;
 use contact_judge::How;
-use fetifeti::contact::ContactType;
+use fetifeti::settings::ContactType;
 use petsc::Session;
 use random_scene::{Case, Collection, Fate};
 

@@ -4,7 +4,8 @@ use crate::support::assembled::Assembled;
 use crate::support::checks::near;
 use crate::support::mpi::{command, Scratch};
 use crate::support::session::with_session;
-use fetifeti::{FetiFeti, MethodSettings, Solution};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{FetiFeti, Solution};
 use scene::Scene;
 
 /// The scene that `scripts/wave_spring.py` writes.
@@ -22,11 +23,8 @@ fn scene(rings: usize, around: usize) -> Scene {
 fn solve(scene: &Scene) -> Solution {
     let problem = scene.substructures(&|_| true).expect("a good scene");
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-8,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+        let settings = MethodSettings::default().rtol(1e-8);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
         solver.solve().expect("there is a solution")
     })
 }

@@ -3,8 +3,8 @@
 use crate::support::mpi::Scratch;
 use crate::support::program::fetifeti;
 use crate::support::session::with_session;
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
+use fetifeti::settings::{ContactType, MethodSettings};
+use fetifeti::{FetiFeti, Settings, Solution};
 use petsc::Session;
 use scene::Scene;
 
@@ -19,7 +19,7 @@ fn solve(session: &Session, text: &str, kind: ContactType) -> Solution {
     let problem = scene.substructures(&|_| true).expect("a good scene");
     let mut settings = Settings::from(MethodSettings::default());
     settings.contact.kind = kind;
-    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+    let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
     solver.solve().expect("there is a solution")
 }
 

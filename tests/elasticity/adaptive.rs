@@ -4,10 +4,8 @@ use crate::support::checks::identities;
 use crate::support::sample::sample;
 use crate::support::session::with_session;
 use crate::support::{mpi, solid};
-use fetifeti::feti::Adaptive;
-use fetifeti::feti::{MethodSettings, Scaling};
-use fetifeti::substructures::Substructures;
-use fetifeti::FetiFeti;
+use fetifeti::settings::{Adaptive, MethodSettings, Scaling};
+use fetifeti::{FetiFeti, Problem};
 use petsc::Session;
 use solid::{assembled, Physics, Rows, Solid};
 
@@ -24,18 +22,11 @@ struct Outcome {
     iterations: usize,
 }
 
-fn solver(
-    session: &Session,
-    problem: Substructures,
-    scaling: Scaling,
-    adaptive: Adaptive,
-) -> FetiFeti {
-    let settings = MethodSettings {
-        scaling: Some(scaling),
-        adaptive,
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    };
+fn solver(session: &Session, problem: Problem, scaling: Scaling, adaptive: Adaptive) -> FetiFeti {
+    let settings = MethodSettings::default()
+        .scaling(scaling)
+        .adaptive(adaptive)
+        .rtol(1e-10);
     FetiFeti::new(session, problem, settings).expect("set up")
 }
 
@@ -52,8 +43,8 @@ fn run_to(
     adaptive: Adaptive,
     rounding: f64,
 ) -> Outcome {
-    let solver = solver(session, solid.substructures(|_| true), scaling, adaptive);
-    let facts = solver.facts();
+    let mut solver = solver(session, solid.substructures(|_| true), scaling, adaptive);
+    let facts = solver.facts().clone();
     let spectrum = solver.spectrum().expect("eigenvalues");
     let spectrum = spectrum.expect("multipliers");
     let solution = solver.solve().expect("solved");
@@ -242,7 +233,7 @@ fn several_bodies() {
 
             let problem = solid.substructures(|_| true);
             let exact = assembled::solve(&problem);
-            let solver = solver(session, problem, Scaling::Deluxe, Adaptive::Auto);
+            let mut solver = solver(session, problem, Scaling::Deluxe, Adaptive::Auto);
             let solution = solver.solve().expect("solved");
             let size = exact.iter().flatten().fold(0.0f64, |a, u| a.max(u.abs()));
             let pairs = solution.u.iter().flatten().zip(exact.iter().flatten());
@@ -257,7 +248,7 @@ fn several_bodies() {
 fn on_a_rank(session: &Session, solid: &Solid) {
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);
-    let solver = solver(session, problem, Scaling::Deluxe, Adaptive::Auto);
+    let mut solver = solver(session, problem, Scaling::Deluxe, Adaptive::Auto);
     identities(&solver, 1e-10, "on ranks");
     let spectrum = solver.spectrum().expect("eigenvalues");
     let kappa = spectrum.expect("multipliers").kappa();

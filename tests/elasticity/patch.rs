@@ -2,7 +2,7 @@
 //! and distorted, for every element and cure of locking.
 
 use crate::support::session::with_session;
-use fetifeti::feti::{MethodSettings, Precision};
+use fetifeti::settings::{MethodSettings, Precision};
 use fetifeti::FetiFeti;
 use petsc::Session;
 use scene::assembly::ErrorNorms;
@@ -12,11 +12,8 @@ use scene::Scene;
 pub fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let settings = MethodSettings {
-        rtol,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings).expect("set up");
+    let settings = MethodSettings::default().rtol(rtol);
+    let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
     let solution = solver.solve().expect("solved");
     assert!(solution.converged(), "{}\n{text}", solution.status);
     let mut squares = [0.0; 3];
@@ -228,13 +225,9 @@ fn a_preconditioner_in_single_precision_changes_no_answer() {
     with_session(|session| {
         let solve = |precision: Precision| {
             let scene = Scene::parse("scene.toml", &manufactured(3, "", 4)).expect("a scene");
-            let settings = MethodSettings {
-                rtol: 1e-12,
-                precision,
-                ..MethodSettings::default()
-            };
+            let settings = MethodSettings::default().rtol(1e-12).precision(precision);
             let problem = scene.substructures(&|_| true).expect("substructures");
-            let solver = FetiFeti::new(session, problem, settings).expect("set up");
+            let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
             let solution = solver.solve().expect("solved");
             assert!(solution.converged());
             (solution.u.concat(), solution.iterations)

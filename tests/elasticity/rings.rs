@@ -2,7 +2,7 @@
 
 use super::patch::errors;
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use petsc::Session;
 use scene::Scene;
@@ -127,11 +127,8 @@ fn a_ring_shrunk_onto_a_shaft_has_the_pressure_of_lame() {
         let far = [4, 8].map(|n| {
             let scene = Scene::parse("fit.toml", &text(n)).expect("a scene");
             let problem = scene.substructures(&|_| true).expect("substructures");
-            let settings = MethodSettings {
-                rtol: 1e-10,
-                ..MethodSettings::default()
-            };
-            let solver = FetiFeti::new(session, problem, settings).expect("set up");
+            let settings = MethodSettings::default().rtol(1e-10);
+            let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
             let solution = solver.solve().expect("solved");
             let rows = solution.rows();
             assert_eq!(rows.len(), 2 * n + 1);

@@ -5,33 +5,26 @@ use crate::support::checks::identities;
 use crate::support::sample::sample;
 use crate::support::session::with_session;
 use crate::support::{mpi, solid};
-use fetifeti::feti::{MethodSettings, Primal, ProjectorKind, Scaling};
-use fetifeti::substructures::Substructures;
-use fetifeti::FetiFeti;
+use fetifeti::settings::{MethodSettings, Primal, ProjectorKind, Scaling};
+use fetifeti::{FetiFeti, Problem};
 use petsc::{Options, Session};
 use solid::{assembled, Held, Physics, Rows, Solid};
 
 const ELASTIC: Physics = Physics::Elastic { nu: 0.3 };
 
 fn tight() -> MethodSettings {
-    MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    }
+    MethodSettings::default().rtol(1e-12)
 }
 
 fn primal(text: &str) -> MethodSettings {
-    MethodSettings {
-        primal: Primal::parse(text).expect("constraints"),
-        ..tight()
-    }
+    tight().primal(Primal::parse(text).expect("constraints"))
 }
 
 /// Identities, λ_min, and the distance to the direct solution.
 fn verify(session: &Session, solid: &Solid, settings: MethodSettings, what: &str) -> FetiFeti {
     let problem = solid.substructures(|_| true);
     let direct = assembled::solve(&problem);
-    let solver = FetiFeti::new(session, problem, settings).expect("set up");
+    let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
     identities(&solver, 1e-10, what);
     let solution = solver.solve().expect("solved");
     assert!(solution.converged(), "{what}: {}", solution.status);
@@ -53,7 +46,7 @@ fn verify(session: &Session, solid: &Solid, settings: MethodSettings, what: &str
     solver
 }
 
-fn lambda_min(solver: &FetiFeti, what: &str) {
+fn lambda_min(solver: &mut FetiFeti, what: &str) {
     let s = solver.spectrum().expect("eigenvalues");
     let s = s.expect("multipliers");
     println!("{what}: {s:?}");
@@ -71,7 +64,7 @@ fn every_choice_of_constraints_solves() {
         }
         let solid = Solid::new(3, [1, 3, 2], Physics::Scalar, Rows::Tied);
         for text in ["edges", "edges,faces", "vertices,edges"] {
-            lambda_min(&verify(session, &solid, primal(text), text), text);
+            lambda_min(&mut verify(session, &solid, primal(text), text), text);
         }
     });
 }
@@ -87,12 +80,9 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
         for rows in [Rows::Tied, Rows::Normals] {
             let solid = Solid::new(3, [2, 2, 2], ELASTIC, rows);
             for scaling in [Scaling::Rho, Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = MethodSettings {
-                    scaling: Some(scaling),
-                    ..tight()
-                };
+                let settings = tight().scaling(scaling);
                 let what = format!("{scaling:?}");
-                lambda_min(&verify(session, &solid, settings, &what), &what);
+                lambda_min(&mut verify(session, &solid, settings, &what), &what);
             }
         }
         for (physics, dim) in [(Physics::Scalar, 3), (ELASTIC, 2)] {
@@ -101,11 +91,8 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
                 ..Solid::new(dim, [1, 3, 4], physics, Rows::Tied)
             };
             for scaling in [Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = MethodSettings {
-                    scaling: Some(scaling),
-                    ..tight()
-                };
-                let solver = verify(session, &solid, settings, "jumps");
+                let settings = tight().scaling(scaling);
+                let mut solver = verify(session, &solid, settings, "jumps");
                 let s = solver.spectrum().expect("eigenvalues");
                 let s = s.expect("multipliers");
                 println!("{scaling:?} {dim}: {s:?}");
@@ -138,10 +125,7 @@ fn floating_and_partly_held_bodies_are_found() {
             let what = format!("{dim}D {sizes:?}");
             let solver = verify(session, &solid, tight(), &what);
             assert_eq!(solver.facts().kernel_dimension, kernel, "{what}");
-            let settings = MethodSettings {
-                projector: ProjectorKind::Preconditioner,
-                ..tight()
-            };
+            let settings = tight().projector(ProjectorKind::Preconditioner);
             verify(session, &solid, settings, &what);
         }
         // Bodies on rollers at x = 0: their kernels have dimension 1 and 3, those of the other bodies 3 and 6.
@@ -151,7 +135,7 @@ fn floating_and_partly_held_bodies_are_found() {
                 ..Solid::new(dim, [2, 2, 2], ELASTIC, Rows::Tied)
             };
             let problem = solid.substructures(|_| true);
-            let solver = FetiFeti::new(session, problem, tight()).expect("set up");
+            let mut solver = FetiFeti::new(session, problem, tight()).expect("set up");
             assert_eq!(solver.facts().kernel_dimension, kernel);
             for (name, defect) in solver.check().expect("checks run") {
                 assert!(
@@ -166,7 +150,7 @@ fn floating_and_partly_held_bodies_are_found() {
     });
 }
 
-fn refused(session: &Session, problem: Substructures) -> String {
+fn refused(session: &Session, problem: Problem) -> String {
     match FetiFeti::new(session, problem, tight()) {
         Ok(_) => panic!("accepted"),
         Err(error) => error.to_string(),
@@ -177,13 +161,14 @@ fn refused(session: &Session, problem: Substructures) -> String {
 fn wrong_entities_are_refused() {
     with_session(|session| {
         let good = || Solid::new(3, [1, 2, 3], Physics::Scalar, Rows::Tied).substructures(|_| true);
-        let shared = |p: &Substructures| {
+        let shared = |p: &Problem| {
             let keys = |s: usize| p.local[s].entities.iter().map(|e| e.key);
             let at = keys(0).position(|k| keys(1).any(|other| other == k));
             at.expect("neighbours share an edge or face")
         };
-        let edge = |p: &Substructures| {
-            let is_edge = |e: &fetifeti::Entity| e.kind == fetifeti::EntityKind::Edge;
+        let edge = |p: &Problem| {
+            let is_edge =
+                |e: &fetifeti::problem::Entity| e.kind == fetifeti::problem::EntityKind::Edge;
             let other: Vec<u64> = p.local[1].entities.iter().map(|e| e.key).collect();
             let mut list = p.local[0].entities.iter();
             list.position(|e| is_edge(e) && other.contains(&e.key))
@@ -248,11 +233,8 @@ fn on_a_rank(session: &Session, scaling: Scaling) {
     };
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);
-    let settings = MethodSettings {
-        scaling: Some(scaling),
-        ..tight()
-    };
-    let solver = FetiFeti::new(session, problem, settings).expect("set up");
+    let settings = tight().scaling(scaling);
+    let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
     identities(&solver, 1e-10, "on ranks");
     let solution = solver.solve().expect("solved");
     let kappa = solver

@@ -5,7 +5,7 @@ use crate::support::mpi::alone;
 use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::solid;
-use fetifeti::feti::{MethodSettings, PcType, Primal};
+use fetifeti::settings::{MethodSettings, PcType, Primal};
 use fetifeti::FetiFeti;
 use petsc::{Options, Session};
 use solid::{Physics, Rows, Solid};
@@ -18,7 +18,8 @@ fn elastic(nu: f64) -> Physics {
 }
 
 fn kappa_with(session: &Session, solid: &Solid, settings: MethodSettings) -> f64 {
-    let solver = FetiFeti::new(session, solid.substructures(|_| true), settings).expect("set up");
+    let mut solver =
+        FetiFeti::new(session, solid.substructures(|_| true), settings).expect("set up");
     identities(&solver, 1e-10, "spectra");
     // The values to compare with have three digits. λ_min ends a cluster, which is expensive to take apart.
     let options = Options::new(session, &solver.settings().method.prefix);
@@ -37,10 +38,7 @@ fn kappa_with(session: &Session, solid: &Solid, settings: MethodSettings) -> f64
 }
 
 fn kappa(session: &Session, solid: &Solid, pc: PcType) -> f64 {
-    let settings = MethodSettings {
-        pc_type: Some(pc),
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().pc_type(pc);
     kappa_with(session, solid, settings)
 }
 
@@ -65,10 +63,8 @@ fn scalar_in_3d() {
             }
             // Without edge averages, vertices alone do not suffice in 3D; additional faces do no harm.
             let with = |text| {
-                let settings = MethodSettings {
-                    primal: Primal::parse(text).expect("constraints"),
-                    ..MethodSettings::default()
-                };
+                let settings =
+                    MethodSettings::default().primal(Primal::parse(text).expect("constraints"));
                 kappa_with(session, &solid([2, 2, 3]), settings)
             };
             let usual = with("vertices,edges");

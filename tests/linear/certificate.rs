@@ -4,7 +4,7 @@
 use crate::support::direct;
 use crate::support::session::with_session;
 use direct::{with_options, Direct};
-use fetifeti::feti::{MethodSettings, PcType};
+use fetifeti::settings::{MethodSettings, PcType};
 use scene::Scene;
 
 /// An error may be this many times the tolerance: `CREDIBLE` of the certificate.
@@ -37,11 +37,7 @@ fn the_estimate_is_an_upper_bound_and_a_close_one() {
         for (what, direct) in scenes {
             for pc in [PcType::Lumped, PcType::Dirichlet, PcType::CoarseCorrected] {
                 for rtol in [1e-2, 1e-5, 1e-8] {
-                    let settings = MethodSettings {
-                        pc_type: Some(pc),
-                        rtol,
-                        ..MethodSettings::default()
-                    };
+                    let settings = MethodSettings::default().pc_type(pc).rtol(rtol);
                     let (solution, distance) = direct.run(session, &settings);
                     let what = format!("{what}, {pc:?}, {rtol:e}");
                     let estimate = solution.kkt.error.expect("an estimate");
@@ -84,7 +80,7 @@ fn primal_problems_that_are_not_solved_do_not_pass() {
                         ("ksp_rtol", &text),
                     ];
                     let (solution, distance) = with_options(session, &options, || {
-                        let solver = direct.solver(session, &MethodSettings::default());
+                        let mut solver = direct.solver(session, &MethodSettings::default());
                         let solution = solver.solve().expect("an end");
                         let distance = direct.distance(&solution.u);
                         (solution, distance)

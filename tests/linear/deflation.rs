@@ -4,8 +4,7 @@
 use crate::support::session::with_session;
 use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
-use fetifeti::feti::Adaptive;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::{Adaptive, MethodSettings};
 use fetifeti::FetiFeti;
 use petsc::Session;
 use rng::Rng;
@@ -58,11 +57,9 @@ fn channels(physics: &str) -> String {
 }
 
 fn below(tau: f64) -> MethodSettings {
-    MethodSettings {
-        adaptive: Adaptive::Below(tau),
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    }
+    MethodSettings::default()
+        .adaptive(Adaptive::Below(tau))
+        .rtol(1e-10)
 }
 
 fn scene(text: &str) -> Scene {
@@ -77,7 +74,7 @@ fn solver(session: &Session, scene: &Scene, settings: MethodSettings) -> FetiFet
 /// κ ≤ 1.5 τ and λ_min ≥ 1 for all thresholds; returns the numbers of vectors.
 fn bounded(session: &Session, what: &str, scene: &Scene, taus: &[f64]) -> Vec<usize> {
     let each = taus.iter().map(|&tau| {
-        let solver = solver(session, scene, below(tau));
+        let mut solver = solver(session, scene, below(tau));
         let s = solver
             .spectrum()
             .expect("eigenvalues")
@@ -118,10 +115,7 @@ fn the_answer_is_the_direct_one() {
         for decades in [3.0, 6.0] {
             let direct = Direct::new(scene(&by_subdomain(3, 4, decades, 7)));
             let (with, distance) = direct.run(session, &below(10.0));
-            let off = MethodSettings {
-                adaptive: Adaptive::Off,
-                ..below(10.0)
-            };
+            let off = below(10.0).adaptive(Adaptive::Off);
             let (without, other) = direct.run(session, &off);
             println!(
                 "10^{decades}: {distance:.1e} in {} iterations, without {other:.1e} in {}",
@@ -147,7 +141,7 @@ fn channels_across_subdomains_and_bodies() {
 fn nothing_is_deflated_where_coefficients_are_constant() {
     with_session(|session| {
         let scene = Scene::load("../../examples/scenes/lee_column_1.toml").expect("a scene");
-        let solver = solver(session, &scene, MethodSettings::default());
+        let mut solver = solver(session, &scene, MethodSettings::default());
         assert!(solver.solve().expect("solved").converged());
         assert!(solver.deflated().is_none());
     });
@@ -157,11 +151,8 @@ fn nothing_is_deflated_where_coefficients_are_constant() {
 fn the_cap_is_kept_and_said() {
     with_session(|session| {
         let scene = scene(&by_subdomain(3, 4, 6.0, 2));
-        let settings = MethodSettings {
-            adaptive_max: 1,
-            ..below(2.0)
-        };
-        let solver = solver(session, &scene, settings);
+        let settings = below(2.0).adaptive_max(1);
+        let mut solver = solver(session, &scene, settings);
         solver.deflate().expect("a search");
         let cost = solver.deflated().expect("a search");
         assert!(cost.vectors.iter().all(|n| *n <= 1), "{cost:?}");
@@ -175,7 +166,7 @@ fn every_krylov_method_works_in_the_complement() {
         let direct = Direct::new(scene(&by_subdomain(3, 3, 3.0, 5)));
         for method in ["cg", "fcg", "pipecg", "gmres"] {
             let distance = direct::with_options(session, &[("ksp_type", method)], || {
-                let solver = direct.solver(session, &below(3.0));
+                let mut solver = direct.solver(session, &below(3.0));
                 solver.deflate().expect("a search");
                 let solution = solver.solve().expect("solved");
                 assert!(solution.converged(), "{method}: {}", solution.status);
@@ -222,12 +213,8 @@ fn contact_keeps_its_vectors() {
     with_session(move |session| {
         let scene = scene(&text);
         let energy = |adaptive| {
-            let settings = MethodSettings {
-                adaptive,
-                rtol: 1e-10,
-                ..MethodSettings::default()
-            };
-            let solver = solver(session, &scene, settings);
+            let settings = MethodSettings::default().adaptive(adaptive).rtol(1e-10);
+            let mut solver = solver(session, &scene, settings);
             if adaptive != Adaptive::Off {
                 solver.deflate().expect("a search");
             }
@@ -249,7 +236,7 @@ fn on_a_rank(session: &Session) -> base::Result<()> {
     let (size, rank) = (session.size(), session.rank());
     let scene = scene(&by_subdomain(3, 4, 6.0, 2));
     let problem = scene.substructures(&|s| s % size == rank)?;
-    let solver = FetiFeti::new(session, problem, below(10.0))?;
+    let mut solver = FetiFeti::new(session, problem, below(10.0))?;
     let kappa = solver.spectrum()?.map(|s| s.kappa());
     let solution = solver.solve()?;
     let cost = solver.deflated().expect("a search");

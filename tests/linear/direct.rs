@@ -3,7 +3,7 @@
 use crate::support::direct;
 use crate::support::session::with_session;
 use direct::{floating_scenes, tight, with_options, Direct};
-use fetifeti::feti::{MethodSettings, PcType, ProjectorKind, Scaling};
+use fetifeti::settings::{MethodSettings, PcType, ProjectorKind, Scaling};
 use scene::Scene;
 
 const PC_TYPES: [PcType; 4] = [
@@ -86,11 +86,7 @@ fn every_preconditioner_with_every_projector() {
         for (name, direct) in floating_scenes() {
             for pc in PC_TYPES {
                 for projector in PROJECTORS {
-                    let settings = MethodSettings {
-                        pc_type: Some(pc),
-                        projector,
-                        ..tight()
-                    };
+                    let settings = tight().pc_type(pc).projector(projector);
                     let (solution, distance) = direct.run(session, &settings);
                     println!(
                         "{name} {pc:?} {projector:?}: {distance:.1e}, {} iterations",
@@ -123,13 +119,11 @@ fn every_scaling_with_every_projector() {
                     for projector in PROJECTORS {
                         for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
                             let what = format!("{name} {scaling:?} {gamma} {projector:?} {pc:?}");
-                            let settings = MethodSettings {
-                                scaling: Some(scaling),
-                                gamma,
-                                projector,
-                                pc_type: Some(pc),
-                                ..tight()
-                            };
+                            let settings = tight()
+                                .scaling(scaling)
+                                .gamma(gamma)
+                                .projector(projector)
+                                .pc_type(pc);
                             let (solution, distance) = direct.run(session, &settings);
                             println!("{what}: {distance:.1e}, {} iterations", solution.iterations);
                             assert!(solution.converged(), "{what}: {}", solution.status);
@@ -153,7 +147,7 @@ fn krylov_methods_reach_the_same_solution() {
                     ("ksp_gmres_restart", "200"),
                 ];
                 let (kind, (solution, distance)) = with_options(session, &options, || {
-                    let solver = direct.solver(session, &MethodSettings::default());
+                    let mut solver = direct.solver(session, &MethodSettings::default());
                     let solution = solver.solve().expect("solved");
                     let distance = direct.distance(&solution.u);
                     (solver.ksp().type_name().unwrap(), (solution, distance))
@@ -227,13 +221,7 @@ fn errors_fall_with_the_second_power_of_h() {
             );
             let scene = Scene::parse("exact.toml", &text).unwrap();
             let direct = Direct::new(scene);
-            let (solution, distance) = direct.run(
-                session,
-                &MethodSettings {
-                    rtol: 1e-10,
-                    ..MethodSettings::default()
-                },
-            );
+            let (solution, distance) = direct.run(session, &MethodSettings::default().rtol(1e-10));
             assert!(solution.converged() && distance < 1e-8, "{distance:.1e}");
             let mut squares = [0.0; 3];
             for (s, u) in solution.u.iter().enumerate() {

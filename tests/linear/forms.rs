@@ -5,10 +5,8 @@ use crate::support::checks::identities;
 use crate::support::direct::{tight, Direct};
 use crate::support::session::with_session;
 use crate::support::{mpi, program};
-use fetifeti::feti::{Adaptive, Operators};
-use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::FetiFeti;
-use fetifeti::Solution;
+use fetifeti::settings::{Adaptive, MethodSettings, Operators, PcType};
+use fetifeti::{FetiFeti, Solution};
 use mpi::Scratch;
 use petsc::Session;
 use program::run_fetifeti;
@@ -24,10 +22,7 @@ const SOLID: &str =
 fn solver(session: &Session, text: &str, settings: MethodSettings) -> FetiFeti {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let settings = MethodSettings {
-        rtol: 1e-10,
-        ..settings
-    };
+    let settings = settings.rtol(1e-10);
     FetiFeti::new(session, problem, settings).expect("set up")
 }
 
@@ -43,14 +38,10 @@ fn sparse_solves_give_what_dense_operators_give() {
     with_session(|session| {
         for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
             let make = |operators| {
-                let settings = MethodSettings {
-                    operators,
-                    pc_type: Some(pc),
-                    ..MethodSettings::default()
-                };
+                let settings = MethodSettings::default().operators(operators).pc_type(pc);
                 solver(session, SOLID, settings)
             };
-            let (dense, sparse) = (make(Operators::Explicit), make(Operators::Implicit));
+            let (mut dense, mut sparse) = (make(Operators::Explicit), make(Operators::Implicit));
             assert_eq!(dense.facts().implicit_kinds, 0);
             assert_eq!(sparse.facts().implicit_kinds, sparse.facts().kinds);
             identities(&sparse, 1e-10, &format!("{pc:?}"));
@@ -69,14 +60,12 @@ fn sparse_solves_give_what_dense_operators_give() {
 fn memory_bounds_dense_operators() {
     with_session(|session| {
         let bounded = |memory| {
-            let settings = MethodSettings {
-                memory: Some(memory),
-                pc_type: Some(PcType::Dirichlet),
-                ..MethodSettings::default()
-            };
+            let settings = MethodSettings::default()
+                .memory(memory)
+                .pc_type(PcType::Dirichlet);
             solver(session, SOLID, settings)
         };
-        let (all, few) = (bounded(1000), bounded(1));
+        let (mut all, mut few) = (bounded(1000), bounded(1));
         assert!(few.facts().implicit_kinds > all.facts().implicit_kinds);
         assert!(few.facts().dense_bytes < all.facts().dense_bytes);
         let (a, b) = (all.solve().expect("solved"), few.solve().expect("solved"));
@@ -96,7 +85,7 @@ fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
         let plain = solver(session, &text(""), MethodSettings::default());
         // Checkerboards of 1/3 by body.
         let rho = "rho = [[1, 0.3333333333333333, 1], [1e4, 7, 1e4], [1, 0.3333333333333333, 1]]\n";
-        let jumps = solver(session, &text(rho), MethodSettings::default());
+        let mut jumps = solver(session, &text(rho), MethodSettings::default());
         assert_eq!(plain.facts().kinds, jumps.facts().kinds);
         // The certificate uses the matrices themselves.
         let solution = jumps.solve().expect("solved");
@@ -121,12 +110,8 @@ fn adaptive_constraints_fit_subdomains_that_share_a_matrix_up_to_a_factor() {
         ];
         for (what, direct, far) in cases {
             for operators in [Operators::Explicit, Operators::Implicit] {
-                let settings = MethodSettings {
-                    operators,
-                    adaptive: Adaptive::Below(2.0),
-                    ..tight()
-                };
-                let solver = direct.solver(session, &settings);
+                let settings = tight().operators(operators).adaptive(Adaptive::Below(2.0));
+                let mut solver = direct.solver(session, &settings);
                 let added: usize = solver.facts().adaptive_constraints.iter().sum();
                 assert!(added > 0, "{what}: no constraint was added");
                 let solution = solver.solve().expect("solved");
@@ -145,10 +130,7 @@ fn directions_are_kept_from_load_to_load() {
         let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\n\
                     load = \"1 + x\"\ndirichlet = [\"left\"]\n";
         let make = |recycle| {
-            let settings = MethodSettings {
-                recycle,
-                ..MethodSettings::default()
-            };
+            let settings = MethodSettings::default().recycle(recycle);
             solver(session, text, settings)
         };
         let (mut kept, mut fresh) = (make(60), make(0));
@@ -158,7 +140,7 @@ fn directions_are_kept_from_load_to_load() {
         assert!(first.iterations.abs_diff(plain.iterations) <= 2);
         let loads = |factor: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
             let local = fresh.problem().local.iter();
-            let of = |s: &fetifeti::substructures::Subdomain| {
+            let of = |s: &fetifeti::Subdomain| {
                 let terms = s.f.iter().zip(&s.dofs);
                 terms.map(|(f, &dof)| f * factor(dof as usize)).collect()
             };

@@ -3,7 +3,7 @@
 
 use crate::support::checks::identities;
 use crate::support::session::with_session;
-use fetifeti::feti::{MethodSettings, PcType};
+use fetifeti::settings::{MethodSettings, PcType};
 use fetifeti::FetiFeti;
 use scene::Scene;
 use serde_json::Value;
@@ -43,12 +43,8 @@ fn kappa_is_that_of_the_oracle() {
             let expected = row[key].as_f64().expect("κ");
             let what = format!("{row}, {key}, {coupled}");
             with_session(move |session| {
-                let settings = MethodSettings {
-                    pc_type: Some(pc),
-                    coupled,
-                    ..MethodSettings::default()
-                };
-                let solver = FetiFeti::new(session, problem, settings).expect("set up");
+                let settings = MethodSettings::default().pc_type(pc).coupled(coupled);
+                let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
                 let s = solver
                     .spectrum()
                     .expect("eigenvalues")
@@ -72,12 +68,8 @@ fn spectrum(rho: [f64; 2], m: [usize; 2], pc: PcType) -> [f64; 2] {
     });
     let problem = scene(&row).substructures(&|_| true).expect("substructures");
     with_session(move |session| {
-        let settings = MethodSettings {
-            pc_type: Some(pc),
-            coupled: 0,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().pc_type(pc).coupled(0);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         identities(&solver, 1e-7, "jumps");
         let found = solver.spectrum().expect("eigenvalues");
         let s = found.expect("multipliers");
@@ -134,11 +126,8 @@ fn bodies_that_meet_at_a_point_keep_their_digits() {
         });
         let found = problems.map(|(coupled, problem)| {
             with_session(move |session| {
-                let settings = MethodSettings {
-                    coupled,
-                    ..MethodSettings::default()
-                };
-                let solver = FetiFeti::new(session, problem, settings).expect("set up");
+                let settings = MethodSettings::default().coupled(coupled);
+                let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
                 identities(&solver, 1e-7, "crossing");
                 let s = solver.spectrum().expect("eigenvalues");
                 let s = s.expect("multipliers");

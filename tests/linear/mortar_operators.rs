@@ -3,7 +3,7 @@
 
 use crate::support::checks::identities;
 use crate::support::session::with_session;
-use fetifeti::feti::{Adaptive, MethodSettings, PcType, ProjectorKind, Scaling};
+use fetifeti::settings::{Adaptive, MethodSettings, PcType, ProjectorKind, Scaling};
 use fetifeti::{FetiFeti, Status};
 use petsc::Session;
 use scene::Scene;
@@ -52,7 +52,7 @@ fn check(
 ) -> [usize; 2] {
     let scene = Scene::parse("s.toml", text).expect("a scene");
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let solver = FetiFeti::new(session, problem, settings).expect("set up");
+    let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
     let solution = solver.solve().expect("a solution");
     let rounded = solution.status == Status::Certificate && text.contains("e12");
     assert!(
@@ -90,21 +90,17 @@ fn every_operator_keeps_its_identities() {
                             ProjectorKind::Diagonal,
                             ProjectorKind::Preconditioner,
                         ] {
-                            let settings = MethodSettings {
-                                pc_type: Some(pc),
-                                scaling: Some(scaling),
-                                projector,
-                                ..MethodSettings::default()
-                            };
+                            let settings = MethodSettings::default()
+                                .pc_type(pc)
+                                .scaling(scaling)
+                                .projector(projector);
                             let what = format!("{dim}D {joint:?} {pc:?} {scaling:?} {projector:?}");
                             sets.push(check(session, &text, settings, 1e-13, &what));
                         }
                     }
-                    let adaptive = MethodSettings {
-                        pc_type: Some(pc),
-                        adaptive: Adaptive::Below(2.0),
-                        ..MethodSettings::default()
-                    };
+                    let adaptive = MethodSettings::default()
+                        .pc_type(pc)
+                        .adaptive(Adaptive::Below(2.0));
                     let what = format!("{dim}D {joint:?} {pc:?} adaptive");
                     sets.push(check(session, &text, adaptive, 1e-12, &what));
                 }
@@ -131,11 +127,7 @@ fn jumps_cost_no_identity() {
                     let text = text.replace("-1", "-0.01").replace("[0.1,", "[0.001,");
                     for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
                         for scaling in [Scaling::Rho, Scaling::Stiffness] {
-                            let settings = MethodSettings {
-                                pc_type: Some(pc),
-                                scaling: Some(scaling),
-                                ..MethodSettings::default()
-                            };
+                            let settings = MethodSettings::default().pc_type(pc).scaling(scaling);
                             let what = format!("{dim}D {joint:?} {young:?} {pc:?} {scaling:?}");
                             check(session, &text, settings, 1e-12, &what);
                         }

@@ -4,7 +4,7 @@ use crate::support::checks::{identities, number};
 use crate::support::common;
 use crate::support::session::with_session;
 use common::Grid;
-use fetifeti::feti::{MethodSettings, PcType};
+use fetifeti::settings::{MethodSettings, PcType};
 use fetifeti::FetiFeti;
 use serde_json::Value;
 
@@ -23,11 +23,8 @@ fn kappa_multipliers_and_iterations_equal_the_oracle() {
                     (PcType::Dirichlet, "dirichlet"),
                     (PcType::CoarseCorrected, "coarse_corrected"),
                 ] {
-                    let settings = MethodSettings {
-                        pc_type: Some(pc),
-                        ..MethodSettings::default()
-                    };
-                    let solver = FetiFeti::new(session, grid.substructures(|_| true), settings)
+                    let settings = MethodSettings::default().pc_type(pc);
+                    let mut solver = FetiFeti::new(session, grid.substructures(|_| true), settings)
                         .expect("set up");
                     let facts = solver.facts();
                     let m = facts.multipliers_local + facts.multipliers_active;

@@ -20,7 +20,7 @@ fn coarse_solvers_may_be_exchanged() {
             ];
             for options in [&iterative[..], &natural[..]] {
                 let (kind, (solution, distance)) = with_options(session, options, || {
-                    let solver = direct.solver(session, &tight());
+                    let mut solver = direct.solver(session, &tight());
                     let dual = solver.dual();
                     let gtg = dual.natural.gtg.as_ref();
                     let gtg = gtg.and_then(|g| g.ksp()).map(|k| k.type_name().unwrap());

@@ -3,17 +3,15 @@
 use std::sync::Arc;
 
 use crate::testing::with_session;
-use fetifeti::feti::interface::sharing::Sharing;
-use fetifeti::feti::jump::operator::Jump;
-use fetifeti::feti::settings::Primal;
-use fetifeti::feti::subdomain::equal;
-use fetifeti::feti::subdomain::equal::Likeness;
-use fetifeti::substructures::Substructures;
+use fetifeti::inside::equal::Likeness;
+use fetifeti::inside::{equal, Jump, Sharing};
+use fetifeti::settings::Primal;
+use fetifeti::Problem;
 use parallel::team::Team;
 use scene::Scene;
 
 /// Subdomains of a ring, in 10 sectors from angle to angle, and what they share.
-fn ring(physics: &str, change: impl Fn(&mut Substructures)) -> Vec<Likeness> {
+fn ring(physics: &str, change: impl Fn(&mut Problem)) -> Vec<Likeness> {
     let text = format!(
         "title = \"ring\"\nphysics = \"{physics}\"\n[[body]]\nname = \"ring\"\n\
          shape = {{ annulus = {{ inner = 1, outer = 1.5, from = 0, to = 100 }} }}\n\

@@ -4,8 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use faer::{Mat, Side};
-use fetifeti::substructures::Substructures;
-use fetifeti::FetiFeti;
+use fetifeti::{FetiFeti, Problem};
 use petsc::Vec as PetscVec;
 
 /// A symmetric function of a symmetric positive semidefinite matrix, zero on its kernel.
@@ -79,7 +78,7 @@ pub struct Reference {
 
 impl Reference {
     /// `rows`: the copies that each multiplier ties, with coefficients.
-    pub fn new(problem: &Substructures, b: Mat<f64>) -> Reference {
+    pub fn new(problem: &Problem, b: Mat<f64>) -> Reference {
         let start: Vec<usize> = problem
             .local
             .iter()

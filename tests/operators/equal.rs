@@ -1,11 +1,10 @@
 //! Unit tests of `src/feti/subdomain/equal.rs`.
 
 use crate::testing::with_session;
-use fetifeti::feti::interface::sharing::Sharing;
-use fetifeti::feti::jump::operator::Jump;
-use fetifeti::feti::settings::Primal;
-use fetifeti::feti::subdomain::equal::*;
-use fetifeti::substructures::Substructures;
+use fetifeti::inside::equal::*;
+use fetifeti::inside::{Jump, Sharing};
+use fetifeti::settings::Primal;
+use fetifeti::Problem;
 use parallel::team::Team;
 use scene::{Faces, Scene};
 use std::sync::Arc;
@@ -43,7 +42,7 @@ fn coefficients_of_subdomains_do_not_make_kinds_but_those_of_elements_do() {
     with_session(|session| {
         let scene = Scene::lee(2, 3, 4, Faces::Whole).expect("a scene");
         let mut problem = scene.substructures(&|_| true).expect("substructures");
-        let count = |problem: &Substructures| {
+        let count = |problem: &Problem| {
             let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
             let sharing =
                 Sharing::new(session.comm(), problem, &weights, Primal::default()).expect("shared");

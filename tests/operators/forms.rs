@@ -1,13 +1,11 @@
 //! Unit tests of `src/feti/cost/forms.rs`.
 
 use crate::testing::with_session;
-use fetifeti::feti::cost::forms::*;
-use fetifeti::feti::interface::sharing::Sharing;
-use fetifeti::feti::jump::operator::Jump;
-use fetifeti::feti::settings::Operators;
-use fetifeti::feti::settings::Primal;
-use fetifeti::feti::subdomain::equal::Likeness;
-use fetifeti::feti::subdomain::which::OperatorForm;
+use fetifeti::inside::equal::Likeness;
+use fetifeti::inside::forms::*;
+use fetifeti::inside::which::OperatorForm;
+use fetifeti::inside::{Jump, Sharing};
+use fetifeti::settings::{Operators, Primal};
 use parallel::team::Team;
 use scene::Scene;
 

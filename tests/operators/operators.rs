@@ -7,9 +7,8 @@ use crate::testing::with_session;
 use dense::{columns, defect, jump_of, pseudo_inverse, spectrum, Reference};
 use direct::{tight, Direct};
 use faer::Mat;
-use fetifeti::feti::{MethodSettings, PcType, ProjectorKind};
-use fetifeti::substructures::{Subdomain, Substructures};
-use fetifeti::FetiFeti;
+use fetifeti::settings::{MethodSettings, PcType, ProjectorKind};
+use fetifeti::{FetiFeti, Problem, Subdomain};
 use petsc::Session;
 use scene::{Faces, Scene};
 
@@ -122,12 +121,8 @@ fn f_m_and_p_equal_their_dense_definitions() {
                     ProjectorKind::Preconditioner,
                 ] {
                     let what = format!("{name}, {pc:?}, {projector:?}");
-                    let settings = MethodSettings {
-                        pc_type: Some(pc),
-                        projector,
-                        ..MethodSettings::default()
-                    };
-                    let solver = set_up(session, &scene, settings);
+                    let settings = MethodSettings::default().pc_type(pc).projector(projector);
+                    let mut solver = set_up(session, &scene, settings);
                     let dual = solver.dual();
                     let reference = Reference::new(solver.problem(), jump_of(&solver).0);
                     let m = columns(&solver, |x, y| dual.m(x, y).unwrap());
@@ -203,6 +198,7 @@ fn f_m_and_p_equal_their_dense_definitions() {
                         &(&p * expected_m(&reference, corrected) * p.transpose()),
                     );
                     let (low, high) = (values[0], values[values.len() - 1]);
+                    drop(dual);
                     let exact = solver
                         .spectrum()
                         .expect("eigenvalues")
@@ -230,7 +226,7 @@ fn f_m_and_p_equal_their_dense_definitions() {
 }
 
 /// The diagonal of B_D diag(K) B_Dᵀ.
-fn superlumped(problem: &Substructures, bd: &Mat<f64>) -> Vec<f64> {
+fn superlumped(problem: &Problem, bd: &Mat<f64>) -> Vec<f64> {
     let entry = |s: &Subdomain, i: usize| {
         let (columns, values) = s.k.row(i);
         let mut row = columns.iter().zip(values);
@@ -305,13 +301,7 @@ fn identities_hold_on_random_scenes() {
             );
             let direct = Direct::new(scene(&text));
             for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
-                let solver = direct.solver(
-                    session,
-                    &MethodSettings {
-                        pc_type: Some(pc),
-                        ..tight()
-                    },
-                );
+                let mut solver = direct.solver(session, &tight().pc_type(pc));
                 let what = format!("round {round}, {pc:?}:\n{text}");
                 // One body without cuts has no operators.
                 if bodies != [1, 1] || subdomains != [1, 1] {
@@ -336,12 +326,10 @@ fn jumps_by_body_do_not_hurt() {
         // 4 × 4 bodies of 4 × 4 subdomains of 4 × 4 elements, ρ alternately 1 and 10⁴.
         let scene = Scene::load("examples/scenes/jump_checkerboard.toml").expect("valid");
         let kappa = |projector, pc_type| {
-            let settings = MethodSettings {
-                projector,
-                pc_type,
-                ..MethodSettings::default()
-            };
-            let solver = set_up(session, &scene, settings);
+            let settings = MethodSettings::default()
+                .projector(projector)
+                .pc_type(pc_type);
+            let mut solver = set_up(session, &scene, settings);
             assert_eq!(solver.facts().floating_bodies, 4);
             let s = solver
                 .spectrum()

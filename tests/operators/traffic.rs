@@ -22,19 +22,19 @@ fn against_petsc(session: &Session, text: &str) -> Result<()> {
     let scene = Scene::parse("test.toml", text)?;
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
-    let solver = FetiFeti::new(session, problem, Settings::default())?;
+    let mut solver = FetiFeti::new(session, problem, Settings::default())?;
     // PETSc completes the set-up of a scatter in its first use, with messages of its own.
     solver.solve()?;
-    let read = || {
+    let read = |solver: &FetiFeti| {
         (
             traffic::sent(),
             counters(),
             solver.method().system().tally(),
         )
     };
-    let (ours, theirs, tally) = read();
+    let (ours, theirs, tally) = read(&solver);
     let solution = solver.solve()?;
-    let (ours_after, theirs_after, tally_after) = read();
+    let (ours_after, theirs_after, tally_after) = read(&solver);
     let ours = ours_after - ours;
     assert!(solution.converged() && solution.iterations > 3);
     assert!(ours.messages > 0 && ours.bytes > 8 * ours.messages && ours.reductions > 0);

@@ -8,10 +8,9 @@ use base::linalg::dense::Dense;
 use base::linalg::orthogonal::Matrix;
 use cholesky::interior::Condenser;
 use cholesky::symbolic::Keep;
-use fetifeti::feti::subdomain::problem::LocalProblem;
-use fetifeti::feti::subdomain::scaled::Scaled;
-use fetifeti::feti::subdomain::turn::*;
-use fetifeti::feti::subdomain::which::{Operator, OperatorForm};
+use fetifeti::inside::turn::*;
+use fetifeti::inside::which::{Operator, OperatorForm};
+use fetifeti::inside::{LocalProblem, Scaled};
 use scene::Scene;
 
 const PHI: f64 = 3.7;

@@ -1,7 +1,7 @@
 //! Unit tests of `src/feti/jump/weights.rs`.
 
-use fetifeti::feti::jump::weights::*;
-use fetifeti::feti::settings::Scaling;
+use fetifeti::inside::weights::*;
+use fetifeti::settings::Scaling;
 use scene::Scene;
 
 fn noisy(rho: &str) -> Vec<bool> {

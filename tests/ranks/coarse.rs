@@ -2,7 +2,8 @@
 
 use crate::support::sample::all_cases;
 use crate::support::{mpi, program};
-use fetifeti::{FetiFeti, MethodSettings};
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
 use mpi::{as_rank, Scratch};
 use program::{ended, run_fetifeti};
 use scene::Scene;
@@ -151,7 +152,7 @@ fn a_rank_knows_the_motions_around_its_own_bodies() {
         let (size, rank) = (session.size(), session.rank());
         let share = |s: &usize| s * size / scene.n_subdomains() == rank;
         let problem = scene.substructures(&|s| share(&s))?;
-        let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+        let mut solver = FetiFeti::new(session, problem, MethodSettings::default())?;
         let facts = solver.facts();
         let (all, here) = (facts.kernel_dimension, facts.kernel_dimension_here);
         assert!(all > 300, "few motions are another case: {all}");

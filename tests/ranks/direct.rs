@@ -12,7 +12,8 @@ use crate::support::assembled::{Assembled, Place};
 use crate::support::mpi::{as_rank, Scratch};
 use crate::support::sample::{all_cases, of};
 use base::Error;
-use fetifeti::{FetiFeti, MethodSettings};
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
 use parallel::exchange::gather_all;
 use petsc::Session;
 use scene::Scene;
@@ -78,11 +79,8 @@ impl Answer {
 pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> base::Result<()> {
     let share = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| share.contains(&s))?;
-    let settings = MethodSettings {
-        rtol: RTOL,
-        ..MethodSettings::default()
-    };
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let settings = MethodSettings::default().rtol(RTOL);
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
     if !solution.converged() {
         let why = format!("{name}: {}", solution.status);

@@ -5,7 +5,8 @@ use std::path::Path;
 use crate::support::mpi::{as_rank, mpirun, Output, Scratch};
 use crate::support::program::{run_fetifeti, PATH};
 use base::linalg::csr::Csr;
-use fetifeti::{FetiFeti, MethodSettings};
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
 use scene::Scene;
 
 const MODEL: &str = "../../examples/scenes/model_contact.toml";
@@ -175,7 +176,7 @@ fn a_callback_that_panics_ends_the_run() {
         let scene = Scene::load(MODEL)?;
         let share = fetifeti::share(session, scene.n_subdomains());
         let problem = scene.substructures(&|s| share.contains(&s))?;
-        let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+        let mut solver = FetiFeti::new(session, problem, MethodSettings::default())?;
         let last = session.rank() == session.size() - 1;
         let mut steps = 0;
         solver.solve_from(None, &mut |_, _| {

@@ -9,7 +9,8 @@ use crate::support::mpi::as_rank;
 use crate::support::rng::Rng;
 use crate::support::sample::all_cases;
 use base::Result;
-use fetifeti::{FetiFeti, MethodSettings};
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
 use petsc::Session;
 use scene::Scene;
@@ -157,7 +158,7 @@ fn run(
     let solved: base::Result<_> = with_options(session, &options, || {
         let mine = |s: usize| s % ranks == rank;
         let problem = scene.substructures(&mine)?;
-        let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+        let mut solver = FetiFeti::new(session, problem, MethodSettings::default())?;
         let solution = solver.solve()?;
         let mut sums = [0.0; 2];
         for (sub, u) in solver.problem().local.iter().zip(&solution.u) {

@@ -1,6 +1,7 @@
 //! Rows of contacts and obstacles: at faces, cross points, prescribed values; labels; load steps.
 
-use fetifeti::substructures::{InterfaceRow, RowKind, RowLabel, RowSource};
+use fetifeti::problem::{RowKind, RowLabel, RowSource};
+use fetifeti::Row;
 use parallel::contiguous_share;
 use scene::{Link, Scene};
 
@@ -82,7 +83,7 @@ fn gaps_have_three_forms() {
 
 /// (holds, inequality) of every row.
 fn kinds(scene: &Scene) -> Vec<(bool, bool)> {
-    let kind = |r: &InterfaceRow| (r.holds, r.kind == RowKind::Inequality);
+    let kind = |r: &Row| (r.holds, r.kind == RowKind::Inequality);
     scene.rows(&|_| true).iter().map(kind).collect()
 }
 
@@ -219,7 +220,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
     let labels = labels(&scene);
     // Nodes 20, 21, 22 of `a` twice; nine nodes of `b`, the corner once.
     assert_eq!(rows.len(), 6 + 9);
-    let of = |dof: u64| -> Vec<(&InterfaceRow, &RowLabel)> {
+    let of = |dof: u64| -> Vec<(&Row, &RowLabel)> {
         let both = rows.iter().zip(&labels);
         both.filter(|(r, _)| r.terms[0].0 == dof).collect()
     };
@@ -252,7 +253,7 @@ fn obstacles_meet_ties_and_given_values() {
     let scene = pair(obstacle);
     // (1, 0) belongs to both bodies: one tie and four bounds share the block of the point.
     let rows = scene.rows(&|_| true);
-    let here: Vec<&InterfaceRow> = rows.iter().filter(|r| r.block == 4).collect();
+    let here: Vec<&Row> = rows.iter().filter(|r| r.block == 4).collect();
     assert_eq!(here.len(), 5);
     assert_eq!(here[0].terms.len(), 2);
     assert_eq!(rows.len(), 5 + 20);

@@ -4,7 +4,7 @@
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Side;
-use fetifeti::substructures::{RowKind, RowLabel, RowSource};
+use fetifeti::problem::{RowKind, RowLabel, RowSource};
 use scene::{Numbering, Scene};
 
 /// min ½ uᵀKu − fᵀu over B u ≤ g, on the unknowns of the numbering.

@@ -4,9 +4,8 @@ use crate::support::checks::{identities, near};
 use crate::support::copies::{Copies, Kind};
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
-use fetifeti::feti::{Adaptive, MethodSettings, Operators, PcType, Precision, Scaling};
-use fetifeti::substructures::Substructures;
-use fetifeti::FetiFeti;
+use fetifeti::settings::{Adaptive, MethodSettings, Operators, PcType, Precision, Scaling};
+use fetifeti::{FetiFeti, Problem};
 use scene::Scene;
 
 const TIED: Copies = Copies {
@@ -23,7 +22,7 @@ fn scene(name: &str, copies: &Copies) -> Scene {
     Scene::load(copies.write(&scratch)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-fn problem(name: &str, copies: &Copies) -> Substructures {
+fn problem(name: &str, copies: &Copies) -> Problem {
     scene(name, copies)
         .substructures(&|_| true)
         .expect("substructures")
@@ -39,10 +38,10 @@ struct Found {
     u: Vec<Vec<f64>>,
 }
 
-fn solve(problem: Substructures, settings: MethodSettings, what: &str) -> Found {
+fn solve(problem: Problem, settings: MethodSettings, what: &str) -> Found {
     let what = what.to_string();
     with_session(move |session| {
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         // Vectors are rounded before a product in single precision.
         identities(&solver, if what == "mixed" { 1e-6 } else { 1e-9 }, &what);
         let solution = solver.solve().expect("solved");
@@ -60,7 +59,7 @@ fn solve(problem: Substructures, settings: MethodSettings, what: &str) -> Found 
 }
 
 /// The same problem without positions: matrices are compared as they are.
-fn unplaced(mut problem: Substructures) -> Substructures {
+fn unplaced(mut problem: Problem) -> Problem {
     problem
         .local
         .iter_mut()
@@ -70,10 +69,7 @@ fn unplaced(mut problem: Substructures) -> Substructures {
 
 #[test]
 fn copies_have_the_factorisations_of_one_part() {
-    let settings = || MethodSettings {
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    };
+    let settings = || MethodSettings::default().rtol(1e-10);
     for (kind, joint) in [
         (Kind::Tetrahedra, "tie"),
         (Kind::Hexahedra, "tie"),
@@ -132,67 +128,16 @@ fn same(a: &Found, b: &Found, tolerance: f64, what: &str) {
 
 #[test]
 fn every_form_of_the_method_is_right_on_copies() {
-    let usual = MethodSettings {
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    };
+    let usual = MethodSettings::default().rtol(1e-10);
     let cases = [
-        (
-            "implicit",
-            MethodSettings {
-                operators: Operators::Implicit,
-                ..usual.clone()
-            },
-        ),
-        (
-            "explicit",
-            MethodSettings {
-                operators: Operators::Explicit,
-                ..usual.clone()
-            },
-        ),
-        (
-            "lumped",
-            MethodSettings {
-                pc_type: Some(PcType::Lumped),
-                ..usual.clone()
-            },
-        ),
-        (
-            "dirichlet",
-            MethodSettings {
-                pc_type: Some(PcType::Dirichlet),
-                ..usual.clone()
-            },
-        ),
-        (
-            "corrected",
-            MethodSettings {
-                pc_type: Some(PcType::CoarseCorrected),
-                ..usual.clone()
-            },
-        ),
-        (
-            "deluxe",
-            MethodSettings {
-                scaling: Some(Scaling::Deluxe),
-                ..usual.clone()
-            },
-        ),
-        (
-            "mixed",
-            MethodSettings {
-                precision: Precision::Mixed,
-                ..usual.clone()
-            },
-        ),
-        (
-            "adaptive",
-            MethodSettings {
-                adaptive: Adaptive::Below(1.5),
-                ..usual
-            },
-        ),
+        ("implicit", usual.clone().operators(Operators::Implicit)),
+        ("explicit", usual.clone().operators(Operators::Explicit)),
+        ("lumped", usual.clone().pc_type(PcType::Lumped)),
+        ("dirichlet", usual.clone().pc_type(PcType::Dirichlet)),
+        ("corrected", usual.clone().pc_type(PcType::CoarseCorrected)),
+        ("deluxe", usual.clone().scaling(Scaling::Deluxe)),
+        ("mixed", usual.clone().precision(Precision::Mixed)),
+        ("adaptive", usual.adaptive(Adaptive::Below(1.5))),
     ];
     let problem = problem("copies-forms", &TIED);
     for (what, settings) in cases {
@@ -224,10 +169,7 @@ fn contact_between_copies_is_the_same_with_and_without_sharing() {
         kind: Kind::Hexahedra,
         ..TIED
     };
-    let settings = MethodSettings {
-        rtol: 1e-10,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().rtol(1e-10);
     let problem = problem("copies-contact", &copies);
     let shared = solve(problem.clone(), settings.clone(), "contact");
     assert!(shared.kinds <= 8, "{}", shared.kinds);

@@ -1,13 +1,14 @@
 //! Numbers of rows, dofs and vertices of scenes, compared with independently computed ones.
 
 use crate::support::common;
-use fetifeti::substructures::{RowKind, Substructures};
+use fetifeti::problem::RowKind;
+use fetifeti::Problem;
 use parallel::contiguous_share;
 use scene::{Faces, Scene};
 use std::collections::{HashMap, HashSet};
 
 /// Rows of B_loc: a fully redundant pair for every two copies of a dof that is not primal.
-fn local_rows(problem: &Substructures) -> usize {
+fn local_rows(problem: &Problem) -> usize {
     let mut copies: HashMap<u64, usize> = HashMap::new();
     let mut primal: HashSet<u64> = HashSet::new();
     for s in &problem.local {
@@ -81,7 +82,7 @@ fn multipliers_of_table_1_agree_with_the_reference() {
 fn every_row_is_provided_once_whatever_the_distribution() {
     let scene = Scene::lee(4, 2, 3, Faces::Whole).unwrap();
     let whole = scene.substructures(&|_| true).unwrap();
-    let key = |r: &fetifeti::substructures::InterfaceRow| (r.terms[0].0, r.terms[1].0, r.block);
+    let key = |r: &fetifeti::Row| (r.terms[0].0, r.terms[1].0, r.block);
     let expected: HashSet<_> = whole.rows.iter().map(key).collect();
     assert_eq!(expected.len(), whole.rows.len());
     for ranks in [2, 3, 7, 100] {
@@ -293,7 +294,7 @@ fn lees_experiment_agrees_with_a_second_implementation() {
 type NamedRow = (Vec<(usize, usize, i32)>, bool);
 
 /// The rows, with every dof given as (lowest subdomain that has it, local dof there), sorted.
-fn named_rows(problem: &Substructures) -> Vec<NamedRow> {
+fn named_rows(problem: &Problem) -> Vec<NamedRow> {
     let mut name: HashMap<u64, (usize, usize)> = HashMap::new();
     for s in &problem.local {
         for (k, &dof) in s.dofs.iter().enumerate() {

@@ -3,7 +3,7 @@
 use crate::support::checks::identities;
 use crate::support::session::with_session;
 use crate::support::solid::assembled;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use scene::Scene;
 
@@ -37,11 +37,8 @@ fn the_pin_bears_the_lug() {
     assert!(scene.has_contact());
     let problem = scene.substructures(&|_| true).unwrap();
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-9,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-9);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         identities(&solver, 1e-8, "pin_lug");
         let solution = solver.solve().expect("solved");
         assert!(solution.converged(), "{}", solution.status);
@@ -62,11 +59,8 @@ fn the_tied_model_has_the_direct_solution() {
     let direct = assembled::solve(&problem);
     let local = problem.local.clone();
     let u = with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-11,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-11);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("solved");
         assert!(solution.converged(), "{}", solution.status);
         solution.u

@@ -2,7 +2,7 @@
 //! move no free node are none, and hold or drive nothing.
 
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use scene::Scene;
 
@@ -43,11 +43,8 @@ fn motions_that_move_no_free_node_do_not_count() {
             let what = format!("{dim}D, {guided}");
             let scene = bars(dim, &guided);
             let problem = scene.substructures(&|_| true).expect("substructures");
-            let settings = MethodSettings {
-                rtol: 1e-10,
-                ..MethodSettings::default()
-            };
-            let solver = FetiFeti::new(session, problem, settings).expect("set up");
+            let settings = MethodSettings::default().rtol(1e-10);
+            let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
             let facts = solver.facts();
             assert_eq!(
                 (facts.floating_bodies, facts.kernel_dimension),

@@ -3,7 +3,7 @@
 use super::meshes::Model;
 use crate::support::session::with_session;
 use crate::support::surface_mesh::gmsh;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 
 /// Blocks in a row: with three motions each, more than dense algebra is for.
@@ -109,7 +109,7 @@ fn a_load_along_a_motion_that_no_pivot_shows_is_refused() {
         let scene = Model::new(name, &mesh).scene(&text);
         let problem = scene.substructures(&|_| true).unwrap();
         let said = with_session(move |session| {
-            let solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+            let mut solver = FetiFeti::new(session, problem, MethodSettings::default())?;
             Ok::<_, base::Error>(solver.solve().err().map(|e| e.to_string()))
         });
         let said = said.unwrap().expect("a refusal");

@@ -2,7 +2,7 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use scene::Scene;
 
@@ -17,11 +17,8 @@ struct Found {
 fn solve(scene: Scene) -> Found {
     with_session(move |session| {
         let problem = scene.substructures(&|_| true).expect("substructures");
-        let settings = MethodSettings {
-            rtol: 1e-12,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("solved");
         assert!(solution.converged(), "{}", solution.status);
         Found {

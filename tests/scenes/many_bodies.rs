@@ -4,8 +4,9 @@ use crate::support::assembled::Assembled;
 use crate::support::qp::Outcome;
 use crate::support::session::with_session;
 use base::Result;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::{RowSource, SolvedRow};
+use fetifeti::problem::RowSource;
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
 use fetifeti::FetiFeti;
 use scene::Scene;
 
@@ -21,10 +22,7 @@ fn load(name: &str) -> Scene {
 fn solve(scene: &Scene, rtol: f64) -> Result<(Vec<SolvedRow>, f64)> {
     let problem = scene.substructures(&|_| true).unwrap();
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().rtol(rtol);
         let solution = FetiFeti::new(session, problem, settings)?.solve()?;
         assert!(solution.converged(), "{}", solution.status);
         Ok((solution.rows().to_vec(), solution.energy))

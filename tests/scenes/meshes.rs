@@ -5,9 +5,9 @@ use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
 use crate::support::solid::assembled;
 use base::Error;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::{SolvedRow, Subdomain};
-use fetifeti::FetiFeti;
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
+use fetifeti::{FetiFeti, Subdomain};
 use mesh::Mesh;
 use scene::Scene;
 
@@ -118,14 +118,11 @@ struct Solved {
 }
 
 fn solve(scene: &Scene, what: &str) -> Solved {
-    let settings = MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().rtol(1e-12);
     let problem = scene.substructures(&|_| true).unwrap();
     let what = what.to_string();
     with_session(move |session| {
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         identities(&solver, 1e-9, &what);
         let solution = solver.solve().expect("solved");
         assert!(solution.converged(), "{what}: {}", solution.status);

@@ -2,7 +2,7 @@
 
 use crate::support::scene_message::message;
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::{FetiFeti, Solution};
 use scene::Scene;
 
@@ -45,11 +45,8 @@ fn solve(text: &str) -> (Scene, Solution) {
     let scene = Scene::parse("s.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
     let solution = with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-12,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("a solution");
         assert!(solution.converged(), "{:?}", solution.status);
         solution

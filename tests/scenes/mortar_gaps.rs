@@ -2,7 +2,7 @@
 //! uniaxial strain: σ = E (1 − ν)/((1 + ν)(1 − 2ν)) · (way − clearance) / height.
 
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use scene::Scene;
 
@@ -51,11 +51,8 @@ fn pressures(text: &str) -> Vec<f64> {
     assert!(scene.mortar.len() > 4, "mortar rows");
     let problem = scene.substructures(&|_| true).expect("substructures");
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-12,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("a solution");
         assert!(solution.converged());
         let rows = solution.rows();

@@ -2,7 +2,7 @@
 //! against the closed form (tests/data/rings.json).
 
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use scene::Scene;
 use serde_json::Value;
@@ -54,15 +54,12 @@ fn error(row: &Value, n: usize, order: usize) -> f64 {
     let (mean, wave) = (exact("pressure_mean"), exact("pressure_cos2"));
     let problem = scene.substructures(&|_| true).expect("substructures");
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-9,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-9);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("a solution");
         assert!(solution.converged());
         let rows = solution.rows();
-        let square = |r: &fetifeti::SolvedRow| {
+        let square = |r: &fetifeti::solution::SolvedRow| {
             let [x, y, _] = r.label.point;
             let cos2 = (x * x - y * y) / (x * x + y * y);
             let p = r.pressure().expect("an area");

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::{FetiFeti, Solution};
 use scene::Scene;
 
@@ -151,11 +151,8 @@ fn boxes(upper: [usize; 3], joint: &str) -> String {
 fn solution(scene: &Scene) -> Solution {
     let problem = scene.substructures(&|_| true).expect("substructures");
     with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-12,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         solver.solve().expect("a solution")
     })
 }

@@ -3,19 +3,17 @@
 use super::meshes::Model;
 use crate::support::session::with_session;
 use crate::support::surface_mesh::{floor, line};
-use fetifeti::feti::MethodSettings;
-use fetifeti::{FetiFeti, SolvedRow};
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
+use fetifeti::FetiFeti;
 use scene::Scene;
 
 /// The rows of a scene's solution, by place of their nodes.
 fn solve(scene: &Scene) -> Vec<SolvedRow> {
     let problem = scene.substructures(&|_| true).expect("substructures");
     let mut rows = with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-12,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         let solution = solver.solve().expect("a solution");
         assert!(solution.converged(), "{:?}", solution.status);
         solution.rows().to_vec()

@@ -4,7 +4,7 @@ use crate::support::mpi::Scratch;
 use crate::support::program::fetifeti;
 use crate::support::sample::{all_cases, sample};
 use crate::support::session::with_session;
-use fetifeti::feti::{MethodSettings, Scaling};
+use fetifeti::settings::{MethodSettings, Scaling};
 use fetifeti::FetiFeti;
 use scene::Scene;
 use serde_json::Value;
@@ -15,12 +15,9 @@ fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
     let taken = |file: &'static str, scaling: Option<Scaling>| -> (Scaling, usize) {
         let scene = Scene::load(file).expect("a scene");
         let problem = scene.substructures(&|_| true).expect("substructures");
-        let settings = MethodSettings {
-            scaling,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().scaling(scaling);
         with_session(move |session| {
-            let solver = FetiFeti::new(session, problem, settings).expect("set up");
+            let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
             let solution = solver.solve().expect("solved");
             (solver.facts().scaling, solution.iterations)
         })

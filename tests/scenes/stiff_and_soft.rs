@@ -1,7 +1,7 @@
 //! Bodies whose stiffness differs by many powers of ten.
 
 use crate::support::session::with_session;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::{FetiFeti, Solution};
 use scene::Scene;
 
@@ -9,11 +9,8 @@ fn solve(text: &str) -> Solution {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
     let solution = with_session(move |session| {
-        let settings = MethodSettings {
-            rtol: 1e-8,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let settings = MethodSettings::default().rtol(1e-8);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
         solver.solve().expect("a solution")
     });
     assert!(solution.converged(), "{:?}\n{text}", solution.status);

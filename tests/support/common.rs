@@ -4,9 +4,8 @@
 use std::collections::BTreeMap;
 
 use base::linalg::csr::Csr;
-use fetifeti::substructures::{
-    InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
-};
+use fetifeti::problem::{RowLabel, RowSource};
+use fetifeti::{Problem, Row, Subdomain};
 
 /// N_b × N_b bodies of N_s × N_s subdomains of n × n bilinear elements on the unit square, held on its whole boundary.
 #[derive(Clone, Copy)]
@@ -113,23 +112,15 @@ impl Grid {
             .collect();
         let dofs = number.keys().map(|&(y, x)| self.dof(b, x, y)).collect();
         let place = |&(y, x): &(usize, usize)| [x as f64 * h, y as f64 * h, 0.0];
-        Subdomain {
-            idle: Vec::new(),
-            index,
-            body,
-            k: Csr::from_triplets(n, &triplets).into(),
-            f,
-            dofs,
-            rho: vec![rho; n],
-            primal,
-            entities: Vec::new(),
-            near_kernel: Some(vec![vec![1.0; n]]),
-            coordinates: Some(number.keys().map(place).collect()),
-        }
+        Subdomain::new(index, body, Csr::from_triplets(n, &triplets), f, dofs)
+            .with_rho(vec![rho; n])
+            .with_primal(primal)
+            .with_near_kernel(vec![vec![1.0; n]])
+            .with_coordinates(number.keys().map(place).collect())
     }
 
     /// The substructures of one rank; `mine` says which subdomains it owns.
-    pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Substructures {
+    pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Problem {
         let (nb, ns) = (self.bodies, self.subdomains);
         let n_subdomains = nb * nb * ns * ns;
         let mut rows = Vec::new();
@@ -164,35 +155,18 @@ impl Grid {
                 }
                 for i in 0..bodies.len() {
                     for j in i + 1..bodies.len() {
-                        rows.push(InterfaceRow {
-                            terms: vec![
-                                (self.dof(bodies[i], x, y), 1.0),
-                                (self.dof(bodies[j], x, y), -1.0),
-                            ],
-                            gap: 0.0,
-                            kind: RowKind::Equality,
-                            holds,
-                            block: (y * (n + 1) + x) as u64,
-                            rounding: 0.0,
-                            label: RowLabel::new(RowSource::Interface(0), [None; 2]),
-                        });
+                        let [a, b] = [i, j].map(|k| self.dof(bodies[k], x, y));
+                        let label = RowLabel::new(RowSource::Interface(0), [None; 2]);
+                        let row = Row::equality([(a, 1.0), (b, -1.0)], 0.0).held(holds);
+                        rows.push(row.in_block((y * (n + 1) + x) as u64).with_label(label));
                     }
                 }
             }
         }
-        Substructures {
-            n_bodies: nb * nb,
-            n_subdomains,
-            ragged: false,
-            weak: Vec::new(),
-            body_names: (0..nb * nb)
-                .map(|b| format!("b{}_{}", b % nb, b / nb))
-                .collect(),
-            local: (0..n_subdomains)
-                .filter(|&s| mine(s))
-                .map(|s| self.subdomain(s))
-                .collect(),
-            rows,
-        }
+        let names = (0..nb * nb).map(|b| format!("b{}_{}", b % nb, b / nb));
+        let here = (0..n_subdomains).filter(|&s| mine(s));
+        Problem::new(names, n_subdomains)
+            .with_subdomains(here.map(|s| self.subdomain(s)))
+            .with_rows(rows)
     }
 }

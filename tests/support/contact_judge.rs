@@ -3,8 +3,8 @@
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
 use base::{Error, Result};
-use fetifeti::contact::ContactType;
-use fetifeti::{FetiFeti, MethodSettings, ProjectorKind, Settings};
+use fetifeti::settings::{ContactType, MethodSettings, ProjectorKind};
+use fetifeti::{FetiFeti, Settings};
 use parallel::exchange::gather_all;
 use petsc::Session;
 use scene::Scene;
@@ -33,12 +33,12 @@ impl From<ContactType> for How {
 }
 
 fn settings(how: How) -> Settings {
-    let mut settings = Settings::from(MethodSettings {
-        rtol: 1e-11,
-        coupled: how.coupled,
-        projector: how.projector,
-        ..MethodSettings::default()
-    });
+    let mut settings = Settings::from(
+        MethodSettings::default()
+            .rtol(1e-11)
+            .coupled(how.coupled)
+            .projector(how.projector),
+    );
     settings.contact.kind = how.kind;
     settings
 }
@@ -61,7 +61,7 @@ pub fn answer(
             share.contains(&s)
         }
     };
-    let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(how.into()))?;
+    let mut solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(how.into()))?;
     let solution = solver.solve()?;
     if !solution.converged() {
         let reason = format!("not converged: {}", solution.status);

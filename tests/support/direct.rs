@@ -8,9 +8,8 @@ use elements::cell::{self, Element, Material};
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use fetifeti::feti::MethodSettings;
-use fetifeti::FetiFeti;
-use fetifeti::Solution;
+use fetifeti::settings::MethodSettings;
+use fetifeti::{FetiFeti, Solution};
 use petsc::{Options, Session};
 use scene::assembly::SubdomainMesh;
 use scene::{Numbering, Scene};
@@ -145,10 +144,7 @@ impl Direct {
 
 /// MethodSettings that stop at 1e-12.
 pub fn tight() -> MethodSettings {
-    MethodSettings {
-        rtol: 1e-12,
-        ..MethodSettings::default()
-    }
+    MethodSettings::default().rtol(1e-12)
 }
 
 /// Runs `work` with PETSc options (names without `-fetifeti_`), and removes them afterwards.

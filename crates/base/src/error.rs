@@ -60,7 +60,7 @@ impl Fault {
 /// Shorthand for results with this error.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The error of every crate: its message, its place, its cause. [`Display`](fmt::Display) writes one sentence of all three;
+/// The error of every crate: its message, its place, its cause. [`Display`](fmt::Display) writes one sentence of them;
 /// each can also be asked for by itself.
 ///
 /// ```

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::smoothed::smoothed;
-use fetifeti::contact::Step;
-use fetifeti::substructures::{BodyNode, RowSource, SolvedRow};
+use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::solution::{SolvedRow, Step};
 use fetifeti::Solution;
 use petsc::Session;
 use report::interfaces::InterfaceNodes;

@@ -10,7 +10,7 @@ use super::renewed::Renewed;
 use super::{balance, contact};
 use crate::checkpoint::{Checkpoints, Resumed};
 use base::Result;
-use fetifeti::substructures::SolvedRow;
+use fetifeti::solution::SolvedRow;
 use fetifeti::{FetiFeti, Solution, Status};
 use parallel::exchange::total;
 use petsc::signals::{self, Heeded};

@@ -3,7 +3,7 @@
 
 use super::course::Course;
 use base::linalg::vec3::{minus, norm};
-use fetifeti::feti::FreeMotion;
+use fetifeti::solution::FreeMotion;
 use parallel::exchange::highest;
 use petsc::Session;
 use report::json::FreeMotion as Recorded;

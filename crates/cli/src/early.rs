@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::fields::discretisation::{total, BodyError, Estimator};
 use base::Result;
-use fetifeti::contact::{Observer, State};
+use fetifeti::solution::{Observer, State};
 use fetifeti::{FetiFeti, Solution};
 use petsc::Session;
 use report::json::certified::{self, Certified, Discretisation};
@@ -41,7 +41,7 @@ impl Early {
     /// Solves load step `step`: to the tolerance, or to the discretisation error. Collective.
     pub fn solve(
         &mut self,
-        solver: &FetiFeti,
+        solver: &mut FetiFeti,
         scene: &Scene,
         step: usize,
         start: Option<&State>,
@@ -50,10 +50,10 @@ impl Early {
         if !solver.settings().method.stops_early {
             return solver.solve_from(start, observe);
         }
-        let session = solver.session();
+        let session = solver.session().clone();
         solver.solve_early(start, observe, &mut |u| {
             self.looks += 1;
-            let bodies = self.estimate(session, scene, u, step);
+            let bodies = self.estimate(&session, scene, u, step);
             let error = total(&bodies);
             self.last = Some(bodies);
             Ok(error)

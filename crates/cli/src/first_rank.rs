@@ -18,7 +18,7 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 /// Prints `text` on rank 0. Collective.
 ///
 /// # Errors
-/// [`base::Error::Environment`] where standard output cannot be written.
+/// [`base::ErrorKind::Environment`] where standard output cannot be written.
 pub fn say(session: &Session, text: &str) -> Result<()> {
     on_first_rank(session, || output::print(text))
 }

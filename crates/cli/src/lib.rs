@@ -47,7 +47,7 @@ use scene::distribution;
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
-    if !fetifeti::processor_suits() {
+    if !fetifeti::inside::processor_suits() {
         eprintln!(
             "Error: fetifeti was built for processors with AVX2 and FMA, which this one lacks: \
              build it again with RUSTFLAGS=\"-C target-cpu=x86-64\""

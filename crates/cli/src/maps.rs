@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::contact::{carrier, nodes, side, with_inequalities};
 use elements::kind::CellKind;
-use fetifeti::substructures::SolvedRow;
+use fetifeti::solution::SolvedRow;
 use report::pictures::contact_map::ContactMap;
 use report::pictures::pieces::pieces;
 use scene::Scene;

@@ -12,13 +12,9 @@ use super::plan_tables::{bodies, interfaces, LIST};
 use super::record::adaptive;
 use super::solve::lines;
 use base::Result;
-use fetifeti::feti::cost::sizes::Sizes;
-use fetifeti::feti::cost::variation::JUMPS;
-use fetifeti::feti::deflation::watch;
-use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::substructures::Substructures;
-use fetifeti::FetiFeti;
+use fetifeti::inside::{watch, Sizes, JUMPS};
+use fetifeti::settings::{Adaptive, MethodSettings, PcType};
+use fetifeti::{FetiFeti, Problem};
 use parallel::team::Team;
 use petsc::Session;
 use report::destination::Destination;
@@ -68,7 +64,7 @@ fn of_a_solve(session: &Session, scene: &Scene) -> String {
 /// subdomains are factored for it. Collective.
 fn deflation(
     session: &Session,
-    problem: Substructures,
+    problem: Problem,
     settings: MethodSettings,
     coefficient: &Coefficient,
 ) -> Result<String> {
@@ -83,7 +79,7 @@ fn deflation(
         }
         _ => {}
     }
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     solver.deflate()?;
     let Some(adaptive) = adaptive(&solver)? else {
         return Ok("none".into());

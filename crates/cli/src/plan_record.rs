@@ -2,7 +2,7 @@
 
 use super::{doubts, physics, record};
 use base::Result;
-use fetifeti::feti::cost::sizes::Sizes;
+use fetifeti::inside::Sizes;
 use petsc::Session;
 use report::json::{Multipliers, PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 use scene::{fits, Scene};

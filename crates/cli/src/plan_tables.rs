@@ -1,6 +1,6 @@
 //! The tables of `fetifeti plan`: bodies, the faces where they touch, rigid surfaces.
 
-use fetifeti::feti::cost::sizes::Sizes;
+use fetifeti::inside::Sizes;
 use report::tables::table::Table;
 use scene::{BodyPlan, InterfacePlan, Plan, Scene, SidePair};
 

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::course::Course;
 use super::{contact, doubts, physics};
 use base::Result;
-use fetifeti::feti::projector::distributed::{self, Work};
-use fetifeti::feti::subdomain::problem::factorisations;
-use fetifeti::feti::Facts;
-use fetifeti::{FetiFeti, Spectrum};
+use fetifeti::inside::distributed::{self, Work};
+use fetifeti::inside::factorisations;
+use fetifeti::solution::{Facts, Spectrum};
+use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
 use petsc::{max_memory, Options, Session};
 use report::json::adaptive::{Adaptive, Declined, Deflation};
@@ -148,7 +148,10 @@ pub(super) fn options(session: &Session) -> Result<BTreeMap<String, String>> {
 }
 
 /// The checks of the identities, and of λ_min ≥ 1 by the exact spectrum.
-pub(super) fn checks(solver: &FetiFeti, exact: Option<Spectrum>) -> Result<BTreeMap<String, f64>> {
+pub(super) fn checks(
+    solver: &mut FetiFeti,
+    exact: Option<Spectrum>,
+) -> Result<BTreeMap<String, f64>> {
     let identities = solver.check()?;
     let mut out: BTreeMap<String, f64> = identities
         .into_iter()

@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use super::course::Course;
 use base::{Error, Result};
-use fetifeti::contact::State;
-use fetifeti::feti::subdomain::problem::factorisations;
-use fetifeti::substructures::{BodyNode, RowKind, RowLabel, RowSource, SolvedRow};
+use fetifeti::inside::factorisations;
+use fetifeti::problem::{BodyNode, RowKind, RowLabel, RowSource};
+use fetifeti::solution::{SolvedRow, State};
 use fetifeti::FetiFeti;
 use parallel::exchange::total;
 use petsc::Session;

@@ -1,7 +1,8 @@
 //! The forces of solved rows on the nodes that they join.
 
 use base::Result;
-use fetifeti::substructures::{BodyNode, SolvedRow};
+use fetifeti::problem::BodyNode;
+use fetifeti::solution::SolvedRow;
 use petsc::Session;
 use scene::{distribution, RowTerms, Scene};
 

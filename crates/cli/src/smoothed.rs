@@ -14,7 +14,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use fetifeti::substructures::{BodyNode, RowSource, SolvedRow};
+use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::solution::SolvedRow;
 use scene::{Scene, Shape};
 
 /// Pressures are smoothed where the side with the multipliers is finer by more than this factor. Between meshes that

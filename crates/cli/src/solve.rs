@@ -14,8 +14,8 @@ use super::values::Values;
 use super::{doubts, inputs, maps, picture, smoothed};
 use crate::checkpoint::Checkpoints;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
+use fetifeti::settings::MethodSettings;
 use fetifeti::{FetiFeti, Status};
 use petsc::{give_back, Session};
 use report::destination::Destination;
@@ -139,10 +139,8 @@ fn solve(
     give_back(); // what reading took
     let assemble = start.elapsed().as_secs_f64();
 
-    let settings = MethodSettings {
-        recycle: if scene.steps.is_some() { DIRECTIONS } else { 0 },
-        ..MethodSettings::default()
-    };
+    let settings =
+        MethodSettings::default().recycle(if scene.steps.is_some() { DIRECTIONS } else { 0 });
     let mut solver = FetiFeti::new(session, substructures, settings)?;
     give_back(); // lists of the set-up
     let place = if args.pieces {
@@ -161,7 +159,7 @@ fn solve(
     };
     let mut report = report(session, scene, &solver, &course, exact)?;
     if solver.settings().method.check {
-        report.check = Some(checks(&solver, exact)?);
+        report.check = Some(checks(&mut solver, exact)?);
     }
     report.seconds.assemble = assemble;
     if session.rank() == 0 {

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use super::args::{Study, StudyName};
 use super::first_rank::on_first_rank;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use lab::baselines::launch::Workspace;
 use lab::study::{adaptive, benchmarks, hard_cases, hertz, kappa, scaling, speed_error, walls};
 use petsc::Session;

@@ -4,8 +4,8 @@ use super::args::Table1;
 use super::first_rank::on_first_rank;
 use super::solve::not_converged;
 use base::{Error, Result};
-use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::{Facts, MethodSettings, PcType};
+use fetifeti::settings::{Adaptive, MethodSettings, PcType};
+use fetifeti::solution::Facts;
 use fetifeti::FetiFeti;
 use petsc::Session;
 use report::destination::Destination;
@@ -75,13 +75,11 @@ fn side(
 ) -> Result<Table1Side> {
     let mut run = |pc| -> Result<(Facts, PcResult)> {
         let substructures = distribution::substructures(session, scene)?;
-        let settings = MethodSettings {
-            pc_type: Some(pc),
-            // The paper's method without additions.
-            adaptive: Adaptive::Off,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, substructures, settings)?;
+        // The paper's method without additions.
+        let settings = MethodSettings::default()
+            .pc_type(pc)
+            .adaptive(Adaptive::Off);
+        let mut solver = FetiFeti::new(session, substructures, settings)?;
         let solution = solver.solve()?;
         if !solution.converged() {
             stopped.get_or_insert(not_converged(

@@ -151,7 +151,8 @@ impl Eps {
 
     /// Solves the eigenvalue problem; [`Eps::converged`] has the number of converged eigenvalues. Collective.
     ///
-    /// # Errors The error of a shell operator if one failed; otherwise SLEPc's.
+    /// # Errors
+    /// The error of a shell operator if one failed; otherwise SLEPc's.
     pub fn solve(&self) -> Result<()> {
         petsc!(EPSSolve(self.raw()))
     }

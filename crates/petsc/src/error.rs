@@ -1,8 +1,9 @@
 //! Errors across the border between Rust and C, in both directions.
 //!
 //! From C: PETSc's error handler is replaced by one that collects the stack frames, and [`check`] turns an error code
-//! into [`ErrorKind::Petsc`](base::ErrorKind::Petsc) with this trace. To C: [`guard`] runs a callback, stores its error or panic in a slot of this
-//! thread and returns an error code to PETSc. The outer call finds the slot filled and returns the stored error.
+//! into [`ErrorKind::Petsc`](base::ErrorKind::Petsc) with this trace. To C: [`guard`] runs a callback, stores its error
+//! or panic in a slot of this thread and returns an error code to PETSc. The outer call finds the slot filled and
+//! returns the stored error.
 
 use base::{Error, ErrorKind, Result};
 use petsc_sys as sys;

@@ -151,7 +151,8 @@ impl Ksp {
 
     /// Checks that the method supports the norm of the convergence test.
     ///
-    /// # Errors PETSc's, if it does not.
+    /// # Errors
+    /// PETSc's, if it does not.
     pub fn check_norm_type(&self) -> Result<()> {
         let mut norm = sys::KSP_NORM_NONE;
         petsc!(KSPGetNormType(self.raw(), &mut norm))
@@ -203,7 +204,8 @@ impl Ksp {
 
     /// Solves A x = b; [`Ksp::converged_reason`] says whether it converged. Collective.
     ///
-    /// # Errors The error of a shell operator or preconditioner if one failed; otherwise PETSc's. Divergence is no
+    /// # Errors
+    /// The error of a shell operator or preconditioner if one failed; otherwise PETSc's. Divergence is no
     /// error.
     pub fn solve(&self, b: &Vec, x: &Vec) -> Result<()> {
         let (b, x) = (b.read()?, x.write()?);
@@ -261,7 +263,8 @@ impl Ksp {
 
     /// (largest, smallest) singular value of the preconditioned operator, as estimated in the last solve.
     ///
-    /// # Errors The method does not estimate them. (For fcg, PETSc passes its data to a routine that expects those of
+    /// # Errors
+    /// The method does not estimate them. (For fcg, PETSc passes its data to a routine that expects those of
     /// cg, and crashes.)
     pub fn extreme_singular_values(&self) -> Result<(f64, f64)> {
         if self.type_name()? == "fcg" {

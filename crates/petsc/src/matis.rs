@@ -76,8 +76,9 @@ impl Mat {
     /// For a MATIS: this rank's local matrix with its stored entries, and the global number of each local row
     /// (negative: none).
     ///
-    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) if rows and columns have different maps; PETSc's own if the rows of the local matrix
-    /// cannot be read.
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) if rows and columns have different maps; PETSc's own if the rows of
+    /// the local matrix cannot be read.
     pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<i32>)> {
         let rows = self.local_to_global()?;
         let mut raw = std::ptr::null_mut();

@@ -7,7 +7,8 @@ use petsc_sys::Flag;
 impl Vec {
     /// The parts of a nested vector in order; the parts of nested parts replace them. `None` for any other vector.
     ///
-    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) for a part that does not exist yet.
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a part that does not exist yet.
     pub fn parts(&self) -> Result<Option<std::vec::Vec<Vec>>> {
         let mut nested = Flag::of(false);
         petsc!(PetscObjectTypeCompare(

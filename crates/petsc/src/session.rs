@@ -63,11 +63,12 @@ impl Session {
     /// name.
     ///
     /// PETSc reads its options from `args`, PETSC_OPTIONS, `-options_file` and .petscrc; `help` is printed first under
-    /// `-help`. PETSc's printed stacks are replaced by [`ErrorKind::Petsc`](base::ErrorKind::Petsc), its signal handler is left out.
+    /// `-help`. PETSc's printed stacks are replaced by [`ErrorKind::Petsc`](base::ErrorKind::Petsc), its signal handler
+    /// is left out.
     ///
     /// # Errors
-    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is already initialised or finalised, is another version than the one compiled
-    /// against, or refuses to start.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is already initialised or finalised, is
+    /// another version than the one compiled against, or refuses to start.
     pub fn new(args: &[String], help: &str) -> Result<Session> {
         check_version()?;
         let (mut begun, mut ended) = (Flag::of(false), Flag::of(false));
@@ -125,7 +126,8 @@ impl Session {
     /// the end and its error handler stays the host's.
     ///
     /// # Errors
-    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is not initialised or is another version than the one compiled against.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when PETSc is not initialised or is another version
+    /// than the one compiled against.
     ///
     /// # Safety
     /// `comm` is a valid communicator, and neither it nor PETSc ends before the session and all objects made with it.

@@ -121,7 +121,8 @@ fn subspace(which: Which) -> usize {
 /// ([`End::settled`]).
 ///
 /// # Errors
-/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) when an end of the spectrum did not converge; [`ErrorKind::Input`](base::ErrorKind::Input) when A annihilates `start`.
+/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) when an end of the spectrum did not converge;
+/// [`ErrorKind::Input`](base::ErrorKind::Input) when A annihilates `start`.
 pub fn extreme_eigenvalues(
     session: &Session,
     a: &Mat,

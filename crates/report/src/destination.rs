@@ -23,7 +23,7 @@ impl Destination {
     /// Checks, before the computation, that results can be written.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn prepare(&self) -> Result<()> {
         if let Some(dir) = &self.out {
             output::prepare_directory(dir)?;
@@ -44,7 +44,7 @@ impl Destination {
     /// Prints text on standard output, unless that is [`silent`](Self::silent).
     ///
     /// # Errors
-    /// [`base::Error::Environment`].
+    /// [`base::ErrorKind::Environment`].
     pub fn print(&self, text: &str) -> Result<()> {
         if self.silent() {
             Ok(())
@@ -63,7 +63,7 @@ impl Destination {
     /// Writes the record to the JSON file, and to the file `name` in the directory.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn write_json<T: Serialize>(&self, name: &str, record: &T) -> Result<()> {
         if let Some(file) = &self.json {
             json::write(file, record)?;
@@ -77,7 +77,7 @@ impl Destination {
     /// Prints a list of the files that were written to the directory.
     ///
     /// # Errors
-    /// [`base::Error::Environment`].
+    /// [`base::ErrorKind::Environment`].
     pub fn written<S: AsRef<str>>(&self, files: &[S]) -> Result<()> {
         let Some(dir) = &self.out else { return Ok(()) };
         let list: Vec<&str> = files.iter().map(S::as_ref).collect();
@@ -92,7 +92,7 @@ impl Destination {
     /// returns their names.
     ///
     /// # Errors
-    /// [`base::Error::Environment`]; those of `more`.
+    /// [`base::ErrorKind::Environment`]; those of `more`.
     pub fn finish<T: Serialize>(
         &self,
         stem: &str,

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 /// directly.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment), one sentence with the path, when writing fails; the old file is then untouched.
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment), one sentence with the path, when writing fails; the old
+/// file is then untouched.
 pub fn write_file(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,

@@ -13,7 +13,8 @@ const ON_AXIS: f64 = 1e-9;
 /// forms.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) for a node to the left of the axis, and for solids and boxes with cells of their own.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a node to the left of the axis, and for solids and boxes with cells
+/// of their own.
 pub(super) fn hold(body: &mut BodySpec, form: &Form) -> Result<()> {
     if !form.is_axial() {
         return Ok(());

@@ -142,8 +142,8 @@ impl Scene {
     /// Checks a scene that a program has built.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) for overlapping bodies, non-matching nodes on tied faces, values out of
-    /// range, ….
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for overlapping bodies, non-matching nodes on tied faces, values
+    /// out of range, ….
     pub fn new(spec: SceneSpec) -> Result<Scene> {
         Scene::part(spec, Part::WHOLE)
     }
@@ -270,8 +270,8 @@ impl Scene {
     /// The experiment of Table 1 of \[Lee\]; see [`lee`].
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) when a count is zero, or when no node lies in the middle third of any
-    /// face.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when a count is zero, or when no node lies in the middle third of
+    /// any face.
     pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> Result<Scene> {
         Scene::new(lee(bodies, subdomains, elements, faces))
     }

@@ -17,7 +17,8 @@ use std::sync::Arc;
 /// the subdomains of both are alike.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) for cells that are inverted or degenerate, or that the form has no element for.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for cells that are inverted or degenerate, or that the form has no
+/// element for.
 pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;

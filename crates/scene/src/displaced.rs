@@ -6,7 +6,8 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::checked::Scene;
-use fetifeti::substructures::{BodyNode, RowSource, Subdomain};
+use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::Subdomain;
 use parallel::exchange::{exchange_words, gather_all};
 use petsc::Session;
 

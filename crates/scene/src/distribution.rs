@@ -7,7 +7,7 @@ use super::fits;
 use super::model::spec::SceneSpec;
 use super::part::Part;
 use base::{Error, Result};
-use fetifeti::substructures::Substructures;
+use fetifeti::Problem;
 use parallel::exchange::gather_all;
 use petsc::{Options, Session};
 
@@ -153,7 +153,7 @@ pub fn ranks_of<'a>(
 }
 
 /// This rank's part of the scene, assembled. Collective.
-pub fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> {
+pub fn substructures(session: &Session, scene: &Scene) -> Result<Problem> {
     session.agree(fits::assembled(session, scene))?;
     let owns = owner(session, scene)?;
     let threads = if session.size() == 1 { 0 } else { 1 };
@@ -166,7 +166,7 @@ pub fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> 
 }
 
 /// The substructures, if squares of forces, stiffnesses and displacements are numbers: norms are made of them.
-fn measurable(title: &str, built: Substructures) -> Result<Substructures> {
+fn measurable(title: &str, built: Problem) -> Result<Problem> {
     for sub in &built.local {
         let force = sub.f.iter().fold(0.0_f64, |a, f| a.max(f.abs()));
         let stiffness = sub.k.diagonal().into_iter().filter(|k| *k > 0.0);

@@ -28,7 +28,8 @@ enum Until {
 /// Reads the scene, unless what assembles it would not fit into the memory.
 ///
 /// # Errors
-/// Those of [`Scene::load`]; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the estimate, the memory that there is, and what to change.
+/// Those of [`Scene::load`]; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the estimate, the memory
+/// that there is, and what to change.
 pub fn load(session: &Session, path: &Path) -> Result<Scene> {
     load_part(session, path, |_| Ok(Part::WHOLE))
 }

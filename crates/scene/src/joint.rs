@@ -1,4 +1,4 @@
-//! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
+//! From a scene to [`Problem`]: subdomain by subdomain, row by row.
 
 use super::checked::Scene;
 use super::coefficient::{at, stiffest};
@@ -7,7 +7,7 @@ use super::matrices::Matrices;
 use super::model::steps::Factors;
 use crate::assembly::{self, SubdomainMesh};
 use base::Result;
-use fetifeti::substructures::{Subdomain, Substructures};
+use fetifeti::{Problem, Subdomain};
 use rayon::prelude::*;
 
 impl Scene {
@@ -19,7 +19,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
-    pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
+    pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Problem> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
         let matrices = Matrices::default();
         // Assembles all subdomains, then reports the first error in their order: the first error in time would be
@@ -29,15 +29,12 @@ impl Scene {
             .map(|&s| self.assemble_with(&self.subdomain_mesh(s)?, &matrices))
             .collect();
         let local: Result<Vec<Subdomain>> = local.into_iter().collect();
-        Ok(Substructures {
-            n_bodies: self.n_bodies(),
-            n_subdomains: self.n_subdomains(),
-            ragged: self.is_ragged(),
-            body_names: self.bodies.iter().map(|b| b.spec.name.clone()).collect(),
-            weak: self.weak_bodies(),
-            local: local?,
-            rows: self.rows(owns),
-        })
+        let names = self.bodies.iter().map(|b| b.spec.name.as_str());
+        let mut problem = Problem::new(names, self.n_subdomains())
+            .with_subdomains(local?)
+            .with_rows(self.rows(owns));
+        (problem.ragged, problem.weak) = (self.is_ragged(), self.weak_bodies());
+        Ok(problem)
     }
 
     /// Subdomain `index`: matrix, load of the last load step, numbering, primal vertices. A pure function of the scene.
@@ -104,19 +101,14 @@ impl Scene {
             near_kernel = slack.near_kernel(near_kernel, body, &dofs);
             idle = slack.parts(body, mesh, &whole.subdomain_nodes(inside));
         }
-        Ok(Subdomain {
-            index: mesh.index,
-            body: mesh.body,
-            entities: entities(body, inside, mesh, &dofs),
-            k,
-            f,
-            dofs,
-            rho,
-            primal,
-            near_kernel: Some(near_kernel),
-            coordinates: Some(coordinates),
-            idle,
-        })
+        let entities = entities(body, inside, mesh, &dofs);
+        Ok(Subdomain::new(mesh.index, mesh.body, k, f, dofs)
+            .with_rho(rho)
+            .with_primal(primal)
+            .with_entities(entities)
+            .with_near_kernel(near_kernel)
+            .with_coordinates(coordinates)
+            .with_idle(idle))
     }
 
     /// Squares of the error norms (L², H¹ seminorm, energy) of the nodal values on `mesh` against the exact solution;

@@ -1,7 +1,7 @@
 //! Scenes: the problem as the user writes it, and its preparation up to the subdomain matrices.
 //!
 //! ```text
-//! TOML ── read ──> SceneSpec ── Scene::new ──> Scene ──┬─> Substructures   (the method)
+//! TOML ── read ──> SceneSpec ── Scene::new ──> Scene ──┬─> Problem   (the method)
 //!                     ▲                                ├─> Numbering       (assembled baselines)
 //!      a program ─────┘                                ├─> SubdomainMesh   (output, error norms)
 //!                                                      └─> Plan            (what will be built)

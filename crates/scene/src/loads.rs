@@ -84,7 +84,8 @@ impl<'a> Stepping<'a> {
     /// eliminated. At the last step they are those of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a load that is not finite, or a step that the scene does not have.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a load that is not finite, or a step that the scene does not
+    /// have.
     pub fn loads(&mut self, step: usize) -> Result<Vec<Vec<f64>>> {
         let factors = Factors::of(&self.scene.steps, step)?;
         let scale = factors.dirichlet();

@@ -9,7 +9,7 @@ use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
-use fetifeti::substructures::RowSource;
+use fetifeti::problem::RowSource;
 use parallel::contiguous_share;
 
 /// The part of one of several ranks.

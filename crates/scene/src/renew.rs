@@ -30,7 +30,8 @@ impl Scene {
     /// [`FetiFeti::set_rows`](fetifeti::FetiFeti::set_rows) takes them.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) where given values contradict an inequality; the scene is then as it was.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where given values contradict an inequality; the scene is then as
+    /// it was.
     pub fn renew(&mut self, at: &Displaced, step: usize) -> Result<()> {
         let Some(renewal) = self.renewal.clone() else {
             return Ok(());

@@ -29,7 +29,7 @@ use super::rows::{entries, obstacles, surfaces};
 use base::linalg::vec3::dot;
 use base::{Error, Result};
 use elements::form::Form;
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 /// The data from which contacts are renewed.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,11 +175,17 @@ fn is_of_common_face(contact: &ContactSpec) -> bool {
 fn check(spec: &SceneSpec) -> Result<()> {
     let steps = spec.steps.as_ref().map(|s| &s.location);
     if !spec.form.is_elastic() {
-        return Err(Error::input("`update` in [steps] of a scalar scene, in which nothing moves (elasticity was expected)").at(steps));
+        return Err(Error::input(
+            "`update` in [steps] of a scalar scene, in which nothing moves (elasticity was expected)",
+        )
+        .at(steps));
     }
     match spec.contacts.iter().find(|c| is_of_common_face(c)) {
-        Some(contact) => Err(Error::input("a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the common \
-             face changes when bodies slide (`sides` were expected: places are then those along a side)").at(&contact.location)),
+        Some(contact) => Err(Error::input(
+            "a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the common \
+             face changes when bodies slide (`sides` were expected: places are then those along a side)",
+        )
+        .at(&contact.location)),
         None => Ok(()),
     }
 }

@@ -5,7 +5,7 @@ use super::geometry::interface::{Link, Shape};
 use super::geometry::normals::of_side;
 use super::model::steps::Factors;
 use base::linalg::vec3::dot;
-use fetifeti::substructures::RowSource;
+use fetifeti::problem::RowSource;
 use std::collections::HashSet;
 
 /// The sides of two bodies that touch or face each other.

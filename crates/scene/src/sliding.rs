@@ -13,7 +13,8 @@ use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use base::linalg::vec3::{cross, dot, minus, norm};
 use elements::mortar::across;
-use fetifeti::substructures::{BodyNode, RowSource, SolvedRow};
+use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::solution::SolvedRow;
 use parallel::exchange::{exchange_words, Record};
 use petsc::Session;
 

@@ -12,7 +12,7 @@ use mpi::traits::Communicator;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use parallel::exchange::{any, exchange_words};
 
 /// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
@@ -77,7 +77,7 @@ pub fn of(
 /// For each class of each local subdomain, whether coefficients vary in one of its sharers. Collective.
 pub fn rough(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     locals: &[Scaled],
     classes: &[Vec<Class>],
@@ -104,7 +104,7 @@ pub fn rough(
 }
 
 /// Whether stiffness varies along the interface of any subdomain. Equal subdomains are examined once. Collective.
-pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Scaled]) -> bool {
+pub fn anywhere(comm: &SimpleCommunicator, problem: &Problem, locals: &[Scaled]) -> bool {
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {

@@ -6,7 +6,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use cholesky::interior::{Condenser, NoFactor};
 use cholesky::symbolic::Keep;
@@ -16,7 +16,7 @@ use parallel::team::Team;
 /// equal, but a turned copy with a constraint gets operators of its own. The old operators are dropped one by one, so
 /// that two operators of every subdomain never exist at the same time.
 pub fn constrain(
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     locals: Vec<Scaled>,
     team: &Team,

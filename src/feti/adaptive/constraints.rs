@@ -18,7 +18,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::{multiply, Dense};
 use parallel::exchange::{any, exchange_words, sum_all};
 use parallel::team::Team;
@@ -28,7 +28,7 @@ use parallel::team::Team;
 /// list is empty if no class is tested. Collective.
 pub fn find(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     jump: &mut Jump,
     locals: &[Scaled],
@@ -172,7 +172,7 @@ pub fn find(
 /// its matrix (equal matrices are one object), the positions of the class in it, the entries of B_D there, and the
 /// names that say which primal dofs the sharers have in common.
 fn signature(
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     locals: &[Scaled],
     sharers: &[(usize, &Class)],
@@ -215,7 +215,7 @@ fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]
 }
 
 /// The contribution of local subdomain `j` to the eigenproblem of a class.
-fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &Class) -> Part {
+fn part(problem: &Problem, jump: &Jump, local: &Scaled, j: usize, class: &Class) -> Part {
     let sub = &problem.local[j];
     let (n, at) = (class.at.len(), &class.at);
     let q = lifted(jump, j, class);

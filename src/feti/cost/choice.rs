@@ -13,7 +13,7 @@ use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{CoarseFunctions, PcType, Scaling};
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use parallel::exchange::{sum_all, total};
 
 /// Columns that each neighbour adds to those that a subdomain sees, relative to the subdomain's own columns, in the
@@ -84,7 +84,7 @@ impl Estimate {
 /// The weights D. Where a subdomain of a mesh in space has a single corner of a cell at a node, it resists little
 /// there. As large a weight as its neighbours have lets κ grow: 889 instead of 55 for the case `rod-4` of `bench`. In
 /// the plane ρ is the better weight (8 instead of 20 for the case `holes`).
-pub fn scaling(problem: &Substructures) -> Scaling {
+pub fn scaling(problem: &Problem) -> Scaling {
     if problem.ragged {
         Scaling::Stiffness
     } else {
@@ -96,7 +96,7 @@ pub fn scaling(problem: &Substructures) -> Scaling {
 /// pull at) and if it pays; else M_D. Collective.
 pub fn preconditioner(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     jump: &Jump,
     functions: CoarseFunctions,

@@ -14,7 +14,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
 use crate::feti::subdomain::equal::Likeness;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use cholesky::symbolic::Keep;
 use cholesky::symbolic::Symbolic;
 use parallel::team::Team;
@@ -118,7 +118,7 @@ impl Kind<'_> {
 }
 
 /// One of each kind of subdomain. `first` has the representative of every local subdomain.
-pub fn kinds<'a>(problem: &'a Substructures, jump: &'a Jump, first: &[Likeness]) -> Vec<Kind<'a>> {
+pub fn kinds<'a>(problem: &'a Problem, jump: &'a Jump, first: &[Likeness]) -> Vec<Kind<'a>> {
     let own = (0..first.len()).filter(|&j| first[j].first == j);
     let of = |j: usize| Kind {
         j,

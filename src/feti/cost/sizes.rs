@@ -13,7 +13,7 @@ use crate::feti::projector::planned::free_motions;
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
 use crate::feti::subdomain::equal;
 use crate::feti::subdomain::which::OperatorForm;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::dense::Dense;
 use parallel::exchange::{exchange_words, highest, sum_all};
@@ -60,7 +60,7 @@ impl Sizes {
     /// Numbers of dofs, subdomains or bodies that make no problem; the same error on all ranks.
     pub fn with(
         session: &Session,
-        problem: &Substructures,
+        problem: &Problem,
         team: &Team,
         constraints: Primal,
     ) -> Result<Sizes> {
@@ -143,7 +143,7 @@ impl Sizes {
 }
 
 /// Every body's kernel as combinations of its candidates, from its matrices; a body without candidates counts as held.
-fn kernels(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<Dense> {
+fn kernels(comm: &SimpleCommunicator, problem: &Problem) -> Vec<Dense> {
     let mut words = Vec::new();
     for sub in &problem.local {
         let columns = sub.near_kernel.as_deref().unwrap_or(&[]);

@@ -2,14 +2,14 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use parallel::exchange::max_all;
 
 /// Coefficients jump inside a body if the largest is more than this many times the smallest.
 pub const JUMPS: f64 = 1e2;
 
 /// The largest ratio of two scaling weights in one body. Collective.
-pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
+pub fn varies(comm: &SimpleCommunicator, problem: &Problem) -> f64 {
     let n = problem.n_bodies;
     // −smallest is stored beside the largest, so that one reduction is enough.
     let mut ends = vec![f64::NEG_INFINITY; 2 * n];

@@ -34,7 +34,7 @@ use super::projector::sweep::Column;
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
 use crate::feti::projector::sweep;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use balance::Balance;
 use matrices::Matrices;
@@ -104,7 +104,7 @@ pub struct Deflation {
 
 impl Deflation {
     /// Searches all bodies for vectors above `tau`, at most `most` in each. Collective.
-    pub fn new(problem: &Substructures, dual: &Dual, tau: f64, most: usize) -> Result<Deflation> {
+    pub fn new(problem: &Problem, dual: &Dual, tau: f64, most: usize) -> Result<Deflation> {
         let clock = Instant::now();
         let graph = BodyGraph::new(problem, &dual.stiffness);
         let mut cost = Cost {

@@ -15,7 +15,7 @@ use std::ops::Range;
 use super::search::Pencils;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
@@ -50,7 +50,7 @@ struct Kernel {
 
 impl<'a> Pencil<'a> {
     /// Prepares rows and projections. Collective.
-    pub fn new(problem: &Substructures, dual: &'a Dual, graph: &BodyGraph) -> Result<Pencil<'a>> {
+    pub fn new(problem: &Problem, dual: &'a Dual, graph: &BodyGraph) -> Result<Pencil<'a>> {
         let all: Vec<u32> = (0..graph.n as u32).collect();
         let groups = graph.colours(&all);
         let bodies = groups.concat();

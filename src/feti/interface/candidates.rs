@@ -8,7 +8,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use std::hash::{BuildHasherDefault, Hasher};
 
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use parallel::exchange::exchange_words;
 
 /// Multiplicative hashing: dof numbers are not chosen by an adversary.
@@ -82,7 +82,7 @@ impl Table {
 /// `home` is the rendezvous rank of a dof. Collective.
 pub fn candidates(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     home: &dyn Fn(u64) -> usize,
 ) -> Vec<Vec<u32>> {
     let size = comm.size() as usize;

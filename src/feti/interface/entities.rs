@@ -10,7 +10,7 @@ use mpi::traits::Communicator;
 
 use super::sharing::Sharing;
 use crate::feti::settings::Primal;
-use crate::substructures::{Entity, Subdomain, Substructures};
+use crate::substructures::{Entity, Problem, Subdomain};
 use crate::{Error, Result};
 use parallel::exchange::exchange_words;
 
@@ -37,7 +37,7 @@ pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> 
 /// Collective.
 pub fn averages(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     primal: Primal,
 ) -> Result<Vec<Vec<Average>>> {
@@ -95,7 +95,7 @@ pub fn averages(
 }
 
 /// Checks of each local subdomain by itself: the dofs of the chosen entities exist and belong to one entity each.
-pub fn check(problem: &Substructures, primal: Primal) -> Result<()> {
+pub fn check(problem: &Problem, primal: Primal) -> Result<()> {
     let mut each = problem.local.iter();
     each.try_for_each(|sub| valid(problem, sub, primal))
 }
@@ -103,7 +103,7 @@ pub fn check(problem: &Substructures, primal: Primal) -> Result<()> {
 /// The constraint of an entity that `count` subdomains share; `None` for one subdomain, or where all its dofs are
 /// vertices.
 fn average(
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     sub: &Subdomain,
     entity: &Entity,
@@ -133,7 +133,7 @@ fn average(
     }))
 }
 
-fn valid(problem: &Substructures, sub: &Subdomain, primal: Primal) -> Result<()> {
+fn valid(problem: &Problem, sub: &Subdomain, primal: Primal) -> Result<()> {
     let mut taken = vec![false; sub.dofs.len()];
     for entity in chosen(sub, primal) {
         let who = || {
@@ -172,7 +172,7 @@ fn valid(problem: &Substructures, sub: &Subdomain, primal: Primal) -> Result<()>
 }
 
 /// Checks that the subdomains agree on an entity that they list under one key.
-fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
+fn agree(problem: &Problem, group: &[&[u64]]) -> Result<()> {
     let first = group[0];
     let who = |r: &[u64]| name(problem, r[2] as usize, r[1] as usize);
     for other in &group[1..] {
@@ -195,7 +195,7 @@ fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
     Ok(())
 }
 
-fn name(problem: &Substructures, subdomain: usize, body: usize) -> String {
+fn name(problem: &Problem, subdomain: usize, body: usize) -> String {
     match problem.body_names.get(body) {
         Some(name) => format!("subdomain {subdomain} of body \"{name}\""),
         // A body that does not exist is found later.

@@ -5,7 +5,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::{Error, Result};
 use parallel::exchange::{any, exchange_words};
 
@@ -24,7 +24,7 @@ pub struct Locations(FxHashMap<u32, Location>);
 
 impl Locations {
     /// The locations of the subdomains of this rank.
-    pub fn own(comm: &SimpleCommunicator, problem: &Substructures) -> Locations {
+    pub fn own(comm: &SimpleCommunicator, problem: &Problem) -> Locations {
         let at = |body: usize| Location {
             rank: comm.rank() as u32,
             body: body as u32,
@@ -65,7 +65,7 @@ pub struct Home {
 }
 
 /// The homes of the bodies of this rank. Collective.
-pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<usize, Home> {
+pub fn homes(comm: &SimpleCommunicator, problem: &Problem) -> FxHashMap<usize, Home> {
     // Messages to the rendezvous rank: [body, lowest subdomain, number of subdomains].
     let size = comm.size() as usize;
     let mut own: Vec<(u64, u64)> = problem
@@ -116,7 +116,7 @@ pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<us
 ///
 /// # Errors
 /// A number is used twice, is not used, or is too large; a subdomain names a body that does not exist.
-pub fn check(comm: &SimpleCommunicator, problem: &Substructures) -> Result<()> {
+pub fn check(comm: &SimpleCommunicator, problem: &Problem) -> Result<()> {
     let (size, n) = (comm.size() as usize, problem.n_subdomains);
     let mut found = Ok(());
     let mut numbers: Vec<Vec<u64>> = vec![Vec::new(); size];

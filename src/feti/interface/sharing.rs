@@ -13,7 +13,7 @@ use super::entities::Average;
 use super::location::{homes, Home, Location, Locations};
 use crate::feti::interface::entities;
 use crate::feti::settings::Primal;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 use parallel::exchange::{exchange, exchange_words, Record};
@@ -95,7 +95,7 @@ impl Sharing {
     /// local dof. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         weights: &[Vec<f64>],
         constraints: Primal,
     ) -> Result<Sharing> {
@@ -217,7 +217,7 @@ impl Sharing {
         self.locations.of(copy.subdomain).body
     }
 
-    fn check(&self, problem: &Substructures) -> Result<()> {
+    fn check(&self, problem: &Problem) -> Result<()> {
         for (dof, copies) in &self.copies {
             let body = |c: &Copy| self.body(c);
             if let Some(c) = copies.iter().find(|c| body(c) != body(&copies[0])) {

@@ -9,7 +9,7 @@ use super::coupled::Coupled;
 use super::dependent;
 use super::scaling::Known;
 use crate::feti::interface::sharing::{Copy, Sharing};
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
 use parallel::exchange::Record;
@@ -104,7 +104,7 @@ impl Entry {
 
 impl Block {
     /// The position of the block, if a subdomain of this rank knows it; that of these rows if it is coupled.
-    pub fn place(&self, problem: &Substructures, rows: &[usize]) -> Option<[f64; 3]> {
+    pub fn place(&self, problem: &Problem, rows: &[usize]) -> Option<[f64; 3]> {
         let dofs = match &self.form {
             Form::Dense(_) => (0..self.dofs.len()).collect(),
             Form::Coupled(coupled) => coupled.dofs(rows).iter().map(|&j| j as usize).collect(),
@@ -273,7 +273,7 @@ fn pick<T: Clone>(values: &[T], at: &[usize]) -> Vec<T> {
 /// Sorts this rank's rows by block. Returns the order of the rows and the blocks, with `rows` counted after `first`
 /// local rows. Blocks with more than `many` rows are coupled.
 pub(crate) fn collect(
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     (first, many): (usize, usize),
 ) -> (Vec<usize>, Vec<Block>) {

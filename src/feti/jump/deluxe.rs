@@ -19,14 +19,14 @@ use super::operator::Jump;
 use crate::feti::adaptive::classes::{self, Class};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::{self, Dense, Scratch};
 use parallel::exchange::exchange_words;
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     jump: &mut Jump,
     locals: &[Scaled],

@@ -20,7 +20,7 @@ use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::jump::blocks;
-use crate::substructures::{RowKind, Substructures};
+use crate::substructures::{Problem, RowKind};
 use parallel::exchange::{exchange, offsets, total};
 
 /// The dual space and its operators.
@@ -87,7 +87,7 @@ impl Jump {
     /// The blocks of the owned rows of B_gl: the number that the scene gave to each, and its rows among the owned ones.
     pub fn numbered_blocks<'a>(
         &'a self,
-        problem: &'a Substructures,
+        problem: &'a Problem,
     ) -> impl Iterator<Item = (u64, Range<usize>)> + 'a {
         self.blocks.iter().map(|block| {
             let first = self.given(block.rows.start);
@@ -96,7 +96,7 @@ impl Jump {
     }
 
     /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
-    pub fn new(comm: &SimpleCommunicator, problem: &Substructures, sharing: &Sharing) -> Jump {
+    pub fn new(comm: &SimpleCommunicator, problem: &Problem, sharing: &Sharing) -> Jump {
         Jump::coupling(comm, problem, sharing, MANY)
     }
 
@@ -104,7 +104,7 @@ impl Jump {
     /// Collective.
     pub fn coupling(
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         sharing: &Sharing,
         many: usize,
     ) -> Jump {
@@ -213,7 +213,7 @@ impl Jump {
         self.inequality[i] || self.initial[i]
     }
 
-    fn receive(&mut self, problem: &Substructures, sharing: &Sharing, entries: Vec<Entry>) {
+    fn receive(&mut self, problem: &Problem, sharing: &Sharing, entries: Vec<Entry>) {
         let seen = GhostRows::new(self.first, self.n_owned, &entries);
         (self.ghosts, self.ghost_is_contact) = seen.all().unzip();
 
@@ -298,10 +298,7 @@ impl Jump {
 
 /// The dual dofs shared inside a body whose lowest subdomain lives on this rank, in a reproducible order, and the start
 /// (and end) of the rows of each local subdomain.
-fn local_groups<'a>(
-    problem: &Substructures,
-    sharing: &'a Sharing,
-) -> (Vec<&'a [Copy]>, Vec<usize>) {
+fn local_groups<'a>(problem: &Problem, sharing: &'a Sharing) -> (Vec<&'a [Copy]>, Vec<usize>) {
     let mut groups = Vec::new();
     let mut start = vec![0];
     let mut rows = 0;

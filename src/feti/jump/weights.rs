@@ -1,7 +1,7 @@
 //! D: the weights of the copies of a dof in averages.
 
 use crate::feti::settings::Scaling;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 
 /// ρ is noise if ln ρ changes from dof to dof by at least this part of its standard deviation. White noise has about
 /// 0.8, a field that varies over ten elements 0.2.
@@ -23,7 +23,7 @@ const MODERATE: f64 = 1e3;
 /// ρ stands for the resistance of a copy that is moved together with its neighbours. Where ρ is noise, that resistance
 /// is the mean. Weights as rough as ρ itself would turn smooth jumps into rough averages, whose energy is larger by up
 /// to H/h.
-pub fn weights(problem: &Substructures, scaling: Scaling, gamma: f64) -> Vec<Vec<f64>> {
+pub fn weights(problem: &Problem, scaling: Scaling, gamma: f64) -> Vec<Vec<f64>> {
     let of = |sub: &Subdomain| -> Vec<f64> {
         match scaling {
             Scaling::Multiplicity => vec![1.0; sub.k.n()],

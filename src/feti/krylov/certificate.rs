@@ -5,7 +5,7 @@ use super::leftover::Leftover;
 use crate::feti::jump::columns::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use base::linalg::strained::strained;
 use parallel::exchange::{max_all, min_all, sum_all};
@@ -20,6 +20,7 @@ const SMALL: f64 = 1e-8;
 
 /// How well the optimality conditions hold, relative to the sizes of their terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Kkt {
     /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts have the same weight.
     /// Residuals of primal dofs and averages are summed over their copies.
@@ -71,7 +72,7 @@ impl Certificate {
     /// Computes the certificate from the displacements of each local subdomain and the multipliers. `known` is a
     /// displacement of the problem's scale; right-hand sides of the rows are others. Collective.
     pub fn new(
-        problem: &Substructures,
+        problem: &Problem,
         dual: &Dual,
         u: &[Vec<f64>],
         lambda: &PetscVec,

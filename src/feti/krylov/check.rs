@@ -5,16 +5,13 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::max_all;
 use petsc::Vec as PetscVec;
 
 /// (name, relative defect) of each identity that applies to the problem. Collective.
-pub(crate) fn identities(
-    problem: &Substructures,
-    system: &System,
-) -> Result<Vec<(&'static str, f64)>> {
+pub(crate) fn identities(problem: &Problem, system: &System) -> Result<Vec<(&'static str, f64)>> {
     let dual = &*system.dual();
     let check = Check {
         problem,
@@ -58,7 +55,7 @@ pub(crate) fn identities(
 }
 
 struct Check<'a> {
-    problem: &'a Substructures,
+    problem: &'a Problem,
     system: &'a System,
     dual: &'a Dual,
 }

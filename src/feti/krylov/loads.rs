@@ -7,7 +7,7 @@
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use cholesky::lanes::LANES;
 use parallel::exchange::highest;
 
@@ -25,7 +25,7 @@ pub struct Loads {
 
 impl Loads {
     /// Condenses the loads of the problem. Collective.
-    pub fn new(problem: &Substructures, dual: &Dual) -> Loads {
+    pub fn new(problem: &Problem, dual: &Dual) -> Loads {
         let f: Vec<&[f64]> = problem.local.iter().map(|s| &s.f[..]).collect();
         Loads::of(dual, &f, None)
     }

@@ -21,7 +21,7 @@ use super::residual::{Iterate, ROUNDING};
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::status::Status;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use base::linalg::strained::strained;
 use parallel::exchange::total;
@@ -182,7 +182,7 @@ fn distance(kkt: &Kkt) -> f64 {
 
 /// r of every local subdomain, and the remaining jumps c − B u of the rows. Collective.
 pub(super) fn remainder(
-    problem: &Substructures,
+    problem: &Problem,
     dual: &Dual,
     u: &[Vec<f64>],
     lambda: &PetscVec,

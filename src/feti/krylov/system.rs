@@ -13,7 +13,7 @@ use super::tally::Tally;
 use crate::feti::deflation::matrices::Matrices;
 use crate::feti::deflation::Deflation;
 use crate::feti::operators::dual::Dual;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use petsc::{signals, Session, Vec as PetscVec};
 
@@ -80,7 +80,7 @@ impl System {
     }
 
     /// Changes Z^k to `active`, and P_2 with it. Returns the number of rows that changed over all ranks. Collective.
-    pub(crate) fn set_active(&self, problem: &Substructures, active: &[bool]) -> Result<usize> {
+    pub(crate) fn set_active(&self, problem: &Problem, active: &[bool]) -> Result<usize> {
         let (changed, renewed) = self.dual.borrow_mut().set_active(problem, active)?;
         if let Some(deflation) = self.deflation.borrow_mut().as_mut().filter(|_| renewed) {
             let done = deflation.renew(&self.dual());

@@ -14,7 +14,7 @@ use mpi::traits::Communicator;
 
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use parallel::exchange::{exchange_words, offsets};
@@ -55,11 +55,7 @@ pub(crate) enum Transposition {
 
 impl Averaging {
     /// Numbers the shared dofs. Collective.
-    pub fn new(
-        problem: &Substructures,
-        sharing: &Sharing,
-        stiffness: &Stiffness,
-    ) -> Result<Averaging> {
+    pub fn new(problem: &Problem, sharing: &Sharing, stiffness: &Stiffness) -> Result<Averaging> {
         let (session, jump) = (&stiffness.session, &stiffness.jump);
         let comm = session.comm();
         let me = comm.rank() as usize;

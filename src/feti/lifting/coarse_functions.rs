@@ -12,7 +12,7 @@ use mpi::traits::Communicator;
 use super::interpolation::Functions;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
 use parallel::exchange::exchange_words;
@@ -49,7 +49,7 @@ enum Source {
 
 /// The recipes of every local subdomain; exchanges rows of Ψ between ranks.
 pub(crate) fn recipes(
-    problem: &Substructures,
+    problem: &Problem,
     sharing: &Sharing,
     stiffness: &Stiffness,
     functions: &[Functions],

@@ -29,7 +29,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::operators::work::{Columns, Work};
 use crate::feti::settings::CoarseFunctions;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use parallel::clock::{self, Phase};
 use parallel::exchange::{any, exchange_words, sum_all};
@@ -63,7 +63,7 @@ const AVERAGES: f64 = 30.0;
 impl Lifting {
     /// Builds Z_c; `None` if no body has a column. Collective.
     pub fn new(
-        problem: &Substructures,
+        problem: &Problem,
         sharing: &Sharing,
         stiffness: &Stiffness,
         which: CoarseFunctions,

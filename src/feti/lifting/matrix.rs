@@ -11,7 +11,7 @@ use super::stored::Pair;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::{multiply, Dense};
 use base::linalg::sorted::distinct;
 
@@ -45,7 +45,7 @@ pub(crate) struct Sums {
 impl Sums {
     /// Computes and adds up the blocks of all local subdomains.
     pub fn new(
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         functions: &[Functions],
         recipes: &[Recipe],

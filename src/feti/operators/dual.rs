@@ -9,7 +9,7 @@ use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::projector::gtg::Gtg;
 use crate::feti::projector::natural::NaturalCoarse;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::total;
 use petsc::{Event, Vec as PetscVec};
@@ -55,7 +55,7 @@ impl Dual {
     /// Returns the number of rows that changed over all ranks, and whether G has changed. Collective.
     pub(crate) fn set_active(
         &mut self,
-        problem: &Substructures,
+        problem: &Problem,
         active: &[bool],
     ) -> Result<(usize, bool)> {
         let session = self.stiffness.session.clone();

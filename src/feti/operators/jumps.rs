@@ -2,7 +2,7 @@
 
 use super::stiffness::Stiffness;
 use super::work::Work;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use petsc::Vec as PetscVec;
 
@@ -33,7 +33,7 @@ impl Stiffness {
 
     /// diag(B diag(K)⁻¹ Bᵀ) on the owned rows of B_gl, whether or not they hold, and zero on the others: by how much a
     /// row opens under a unit force if the nodes give way alone. Collective.
-    pub fn compliance_of_rows(&self, problem: &Substructures) -> Result<Vec<f64>> {
+    pub fn compliance_of_rows(&self, problem: &Problem) -> Result<Vec<f64>> {
         let mut ghost = vec![0.0; self.jump.ghosts.len()];
         for (j, columns) in self.jump.columns.iter().enumerate() {
             let (k, interface) = (&problem.local[j].k, &self.locals[j].gamma().interface);

@@ -21,7 +21,7 @@ use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
@@ -50,7 +50,7 @@ impl Preconditioner {
     pub fn new(
         comm: &SimpleCommunicator,
         kind: PcType,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         lifting: Option<Lifting>,
         precision: Precision,

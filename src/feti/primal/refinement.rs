@@ -11,7 +11,7 @@
 
 use super::space::PrimalSpace;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::Dense;
 
 /// Largest ratio of coefficients in a body up to which the assembled matrix is accurate enough.
@@ -31,7 +31,7 @@ pub struct Refinement {
 
 impl Refinement {
     /// The rigid motions at the primal dofs.
-    pub fn new(problem: &Substructures, locals: &[Scaled]) -> Refinement {
+    pub fn new(problem: &Problem, locals: &[Scaled]) -> Refinement {
         let pairs = problem.local.iter().zip(locals);
         Refinement {
             motions: pairs.map(|(sub, l)| motions(sub, l)).collect(),

@@ -3,7 +3,7 @@
 use super::space::PrimalSpace;
 use crate::feti::subdomain::factor::no_stiffness;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::{any, gather_all};
 use petsc::Session;
@@ -14,7 +14,7 @@ use petsc::Session;
 /// [`ErrorKind::Unfit`](base::ErrorKind::Unfit), on all ranks.
 pub fn check(
     session: &Session,
-    problem: &Substructures,
+    problem: &Problem,
     space: &PrimalSpace,
     locals: &[Scaled],
 ) -> Result<()> {

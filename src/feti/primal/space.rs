@@ -15,7 +15,7 @@ use super::matrix::{Outgoing, PrimalMatrix};
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
 use parallel::exchange::{exchange_words, offsets};
@@ -65,7 +65,7 @@ impl PrimalSpace {
     /// Collective.
     pub fn new(
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         sharing: &Sharing,
         averages: &[Vec<Average>],
         locals: &[Scaled],
@@ -102,7 +102,7 @@ impl PrimalSpace {
     fn number(
         &mut self,
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         averages: &[Vec<Average>],
         locals: &[Scaled],
     ) -> Vec<Vec<u32>> {
@@ -181,7 +181,7 @@ impl PrimalSpace {
     fn find_kernels(
         &mut self,
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         locals: &[Scaled],
         asked: &[Vec<u32>],
     ) {
@@ -269,7 +269,7 @@ impl PrimalSpace {
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of each body.
-    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled]) -> FxHashMap<usize, f64> {
+    fn local_stiffness(&self, problem: &Problem, locals: &[Scaled]) -> FxHashMap<usize, f64> {
         let mut out: FxHashMap<usize, f64> = FxHashMap::default();
         for (sub, local) in problem.local.iter().zip(locals) {
             let interface = local.gamma().interface.iter();

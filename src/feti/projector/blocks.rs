@@ -11,7 +11,7 @@ use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
 use super::rows::Rows;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
 use parallel::exchange::{gather_all, highest, sum_all};
 
@@ -126,7 +126,7 @@ fn is_part(a: &[u32], b: &[u32]) -> bool {
 }
 
 /// Where the bodies are: the mean of their dofs' positions. `None` if a subdomain does not know them. Collective.
-pub fn positions(comm: &SimpleCommunicator, problem: &Substructures) -> Option<Vec<[f64; 3]>> {
+pub fn positions(comm: &SimpleCommunicator, problem: &Problem) -> Option<Vec<[f64; 3]>> {
     let subs = &problem.local;
     let unknown = subs.iter().any(|s| s.coordinates.is_none());
     if highest(comm, f64::from(u8::from(unknown))) > 0.0 {

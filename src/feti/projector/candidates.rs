@@ -8,7 +8,7 @@ use super::natural::NaturalCoarse;
 use super::rows::{RowEntry, Rows};
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use parallel::exchange::{exchange, max_all};
 use parallel::owners::Owners;
@@ -18,7 +18,7 @@ const STILL: f64 = 1e-12;
 
 impl NaturalCoarse {
     /// Assembles [`all`](Self::all), with the names of columns. Collective.
-    pub(super) fn all_rows(&self, problem: &Substructures, stiffness: &Stiffness) -> Rows {
+    pub(super) fn all_rows(&self, problem: &Problem, stiffness: &Stiffness) -> Rows {
         let kernels = (&self.columns, &self.kernels[..]);
         rows_of_bodies(stiffness.comm(), problem, &stiffness.jump, kernels)
     }
@@ -28,7 +28,7 @@ impl NaturalCoarse {
 /// Collective.
 pub(super) fn rows_of_bodies(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     (columns, kernels): (&KernelColumns, &[Dense]),
 ) -> Rows {
@@ -65,7 +65,7 @@ pub(super) fn rows_of_bodies(
 /// The largest entry of each column of R. Collective.
 fn largest(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     columns: &KernelColumns,
     kernels: &[Dense],
 ) -> Vec<f64> {

@@ -8,7 +8,7 @@ use super::natural::NaturalCoarse;
 use super::twist::{twists, Twist};
 use super::words::{as_one, in_words};
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
 
 /// Motions that nothing holds, of one body or of bodies that move together.
@@ -36,7 +36,7 @@ impl NaturalCoarse {
     pub fn free_motions(
         &self,
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
     ) -> Vec<FreeMotion> {
         self.named(comm, problem, stiffness, self.unheld())
@@ -46,7 +46,7 @@ impl NaturalCoarse {
     pub fn named(
         &self,
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         motions: &[Motion],
     ) -> Vec<FreeMotion> {
@@ -62,7 +62,7 @@ impl NaturalCoarse {
 
 /// Motions of the same bodies as one.
 pub(super) fn grouped(
-    problem: &Substructures,
+    problem: &Problem,
     columns: &KernelColumns,
     motions: &[Motion],
     twists: &[Vec<Twist>],

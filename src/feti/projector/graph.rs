@@ -2,7 +2,7 @@
 
 use super::blocks::positions;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::lists::Lists;
 use base::linalg::sorted::distinct;
 use parallel::exchange::gather_all;
@@ -23,7 +23,7 @@ pub struct BodyGraph {
 
 impl BodyGraph {
     /// Reads the rows. Collective.
-    pub fn new(problem: &Substructures, stiffness: &Stiffness) -> BodyGraph {
+    pub fn new(problem: &Problem, stiffness: &Stiffness) -> BodyGraph {
         let jump = &stiffness.jump;
         let n = problem.n_bodies;
         let mut local = vec![0u32; jump.n_owned_local];

@@ -5,7 +5,7 @@ use super::columns::KernelColumns;
 use super::motion::Motion;
 use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 
@@ -14,7 +14,7 @@ impl NaturalCoarse {
     /// Collective.
     pub fn check_held(
         &self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         load: &KernelLoad,
     ) -> Result<()> {
@@ -37,7 +37,7 @@ impl NaturalCoarse {
 
     /// A driven motion in words, to follow what is said of its bodies: " where it slides along x". Empty where one is
     /// free altogether, or several do not move as one. Collective.
-    pub fn way(&self, problem: &Substructures, stiffness: &Stiffness, motion: &Motion) -> String {
+    pub fn way(&self, problem: &Problem, stiffness: &Stiffness, motion: &Motion) -> String {
         let comm = stiffness.comm();
         let bodies = distinct(motion.0.iter().map(|e| self.columns.body(e.0) as usize));
         // Other free motions of the same bodies belong to the name of this one.
@@ -60,7 +60,7 @@ impl NaturalCoarse {
 }
 
 /// The bodies that a combination of kernel vectors moves, as the beginning of a sentence: "body "a" is".
-pub fn moving(problem: &Substructures, columns: &KernelColumns, motion: &Motion) -> String {
+pub fn moving(problem: &Problem, columns: &KernelColumns, motion: &Motion) -> String {
     let bodies = moved(columns, motion);
     let names: Vec<String> = (bodies.into_iter())
         .map(|b| format!("\"{}\"", problem.body_names[b as usize]))
@@ -74,7 +74,7 @@ pub fn moving(problem: &Substructures, columns: &KernelColumns, motion: &Motion)
 
 /// A remark on a body that a combination of kernel vectors moves, to be put behind a sentence; empty unless the cells
 /// of the body leave motions without energy that are not rigid.
-pub fn weakness(problem: &Substructures, columns: &KernelColumns, motion: &Motion) -> String {
+pub fn weakness(problem: &Problem, columns: &KernelColumns, motion: &Motion) -> String {
     problem.weakness(&moved(columns, motion))
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
@@ -19,7 +19,7 @@ impl NaturalCoarse {
     /// coordinates or kernels are not known. Collective.
     pub(super) fn motions(
         &self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         like: &PetscVec,
         own: &Range<usize>,

@@ -30,7 +30,7 @@ use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
@@ -98,7 +98,7 @@ impl NaturalCoarse {
     /// # Errors
     /// `copies` does not divide the number of ranks.
     pub fn new(
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         (wanted, varies, copies): (ProjectorKind, f64, usize),
@@ -168,7 +168,7 @@ impl NaturalCoarse {
 
     /// Finds the sparsity of GᵀG, the order in which it is factored, and the columns that this rank has to know for the
     /// weight Q that is in use. Collective.
-    fn arrange(&mut self, problem: &Substructures, stiffness: &Stiffness) -> Result<()> {
+    fn arrange(&mut self, problem: &Problem, stiffness: &Stiffness) -> Result<()> {
         let comm = stiffness.comm();
         self.all = self.all.named(&self.known);
         let start = self.columns.start();
@@ -208,7 +208,7 @@ impl NaturalCoarse {
     /// Assembles G, Q G and Gᵀ Q G for the rows that hold now. Collective.
     pub fn renew(
         &mut self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
     ) -> Result<()> {
@@ -237,7 +237,7 @@ impl NaturalCoarse {
     /// G, Q G and Gᵀ Q G with Q = M⁻¹ + `rest` times the superlumped diagonal, if Q is to be M⁻¹. Collective.
     fn weighted(
         &mut self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         rest: f64,
@@ -340,7 +340,7 @@ impl NaturalCoarse {
     }
 
     /// The graph of the bodies. Collective when it is first asked for.
-    pub(crate) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
+    pub(crate) fn graph(&self, problem: &Problem, stiffness: &Stiffness) -> &BodyGraph {
         self.graph
             .get_or_init(|| BodyGraph::new(problem, stiffness))
     }

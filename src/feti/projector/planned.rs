@@ -12,7 +12,7 @@ use super::rounding::rounding_of_rows;
 use super::shape::{Shape, Sharing};
 use super::twist::twists;
 use crate::feti::jump::operator::Jump;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 
 /// The motions that all candidate rows together leave free, found without a factorisation. `combinations` has the
@@ -20,7 +20,7 @@ use base::linalg::dense::Dense;
 /// Collective.
 pub fn free_motions(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     combinations: &[Dense],
 ) -> Vec<FreeMotion> {

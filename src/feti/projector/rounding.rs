@@ -5,7 +5,7 @@ use mpi::topology::SimpleCommunicator;
 use super::rows::Rows;
 use super::shape::Shape;
 use crate::feti::jump::operator::Jump;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
 use parallel::exchange::any;
 
@@ -13,7 +13,7 @@ use parallel::exchange::any;
 /// are exact. Collective.
 pub(super) fn rounding_of_rows(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     (all, shape): (&Rows, &Shape),
 ) -> Vec<f64> {

@@ -4,7 +4,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::columns::KernelColumns;
 use super::motion::Motion;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::vec3::{cross, minus, norm};
@@ -66,7 +66,7 @@ impl Twist {
 /// subdomain here and their kernels as combinations of candidates. Collective.
 pub fn twists<'a>(
     comm: &SimpleCommunicator,
-    problem: &Substructures,
+    problem: &Problem,
     columns: &KernelColumns,
     owned: impl Iterator<Item = (usize, &'a Dense)>,
     motions: &[Motion],

@@ -10,7 +10,7 @@ use crate::feti::cost::variation::JUMPS;
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::{any, sum_all};
 use petsc::Vec as PetscVec;
@@ -46,11 +46,7 @@ pub(super) fn choose(
 }
 
 /// The largest ratio of the stiffnesses of bodies: means of the diagonal of K over their interfaces. Collective.
-pub(super) fn spread(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    stiffness: &Stiffness,
-) -> f64 {
+pub(super) fn spread(comm: &SimpleCommunicator, problem: &Problem, stiffness: &Stiffness) -> f64 {
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
@@ -82,7 +78,7 @@ impl NaturalCoarse {
 
     /// diag(B_D diag(K) B_Dᵀ) on the owned rows, with diag(G)⁻¹ in place of G⁻¹ in coupled blocks: any positive
     /// diagonal gives a projector. Collective.
-    pub fn superlumped(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
+    pub fn superlumped(&self, problem: &Problem, stiffness: &Stiffness) -> Result<Vec<f64>> {
         let jump = &stiffness.jump;
         let mut ghost = vec![0.0; jump.ghosts.len()];
         for (j, columns) in jump.columns.iter().enumerate() {
@@ -108,7 +104,7 @@ impl NaturalCoarse {
     /// floating body that touches nothing else, M⁻¹ G vanishes.
     pub(super) fn rigid_rows(
         &self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         rest: f64,
     ) -> Result<Vec<f64>> {
@@ -130,7 +126,7 @@ impl NaturalCoarse {
     /// differ in stiffness (docs/theory.md, section 6).
     pub(super) fn probe(
         &self,
-        problem: &Substructures,
+        problem: &Problem,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         rigid: &[f64],

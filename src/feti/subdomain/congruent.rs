@@ -15,7 +15,7 @@ use super::equal::{Likeness, SAMPLES, UNIT};
 use super::turn::Turn;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::equal;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::csr::Csr;
 use base::linalg::orthogonal::{fit, Fit, Matrix, IDENTITY};
 use parallel::team::Team;
@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-12;
 const OFFSET: f64 = 0.381_966;
 
 /// Replaces first subdomains that are turned copies of earlier ones.
-pub(super) fn merge(problem: &Substructures, jump: &Jump, team: &Team, all: &mut [Likeness]) {
+pub(super) fn merge(problem: &Problem, jump: &Jump, team: &Team, all: &mut [Likeness]) {
     let first: Vec<usize> = (0..all.len()).filter(|&j| all[j].first == j).collect();
     if first.len() < 2 {
         return;
@@ -59,7 +59,7 @@ pub(super) fn merge(problem: &Substructures, jump: &Jump, team: &Team, all: &mut
 }
 
 /// Number of components at every node if all nodes have the same, side by side and in one place.
-fn components(problem: &Substructures, j: usize) -> Option<usize> {
+fn components(problem: &Problem, j: usize) -> Option<usize> {
     let sub = &problem.local[j];
     let places = sub.coordinates.as_ref()?;
     let here = places.iter().take_while(|&x| *x == places[0]).count();
@@ -95,7 +95,7 @@ fn has_whole_nodes(jump: &Jump, j: usize, components: usize) -> bool {
 }
 
 /// Hash of some numbers that a turn does not change; `None` if the subdomain cannot be turned.
-fn hash(problem: &Substructures, jump: &Jump, j: usize) -> Option<u64> {
+fn hash(problem: &Problem, jump: &Jump, j: usize) -> Option<u64> {
     let c = components(problem, j)?;
     let k = &problem.local[j].k;
     let blocks = Blocks::new(k, c);
@@ -129,7 +129,7 @@ fn hash(problem: &Substructures, jump: &Jump, j: usize) -> Option<u64> {
 
 /// φ and R with K_j = φ R K_i Rᵀ for the two subdomains [i, j]; `None` if there are none.
 fn turned(
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     components: usize,
     [i, j]: [usize; 2],

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use super::congruent;
 use super::turn::Turn;
 use crate::feti::jump::operator::Jump;
-use crate::substructures::Substructures;
+use crate::substructures::Problem;
 use base::linalg::csr::Csr;
 use parallel::team::Team;
 
@@ -29,7 +29,7 @@ pub struct Likeness {
 }
 
 /// For every local subdomain, the first one that equals it up to a factor, a rotation and a reflection.
-pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<Likeness> {
+pub fn representatives(problem: &Problem, jump: &Jump, team: &Team) -> Vec<Likeness> {
     let equal = |(first, factor)| Likeness {
         first,
         factor,
@@ -42,7 +42,7 @@ pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec
 }
 
 /// For every local subdomain, the first one that equals it and the multiple of its matrix.
-pub fn multiples(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
+pub fn multiples(problem: &Problem, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
     let n = problem.local.len();
     let buckets: Vec<u64> = (0..n).map(|j| hash(problem, jump, j)).collect();
     first_of_each(team, &buckets, 1.0, |i, j| multiple(problem, jump, i, j))
@@ -93,7 +93,7 @@ pub const UNIT: f64 = 1e6;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Hash of some of the data that [`multiple`] compares; it tells most matrices apart.
-fn hash(problem: &Substructures, jump: &Jump, j: usize) -> u64 {
+fn hash(problem: &Problem, jump: &Jump, j: usize) -> u64 {
     let k = &problem.local[j].k;
     let mut state = DefaultHasher::new();
     (k.n(), k.nnz(), &jump.delta[j], &jump.primal[j]).hash(&mut state);
@@ -113,7 +113,7 @@ fn reference(k: &Csr) -> f64 {
 }
 
 /// Whether two local subdomains have the same interface and averages, and matrices of the same pattern.
-pub(super) fn same_pattern(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> bool {
+pub(super) fn same_pattern(problem: &Problem, jump: &Jump, i: usize, j: usize) -> bool {
     let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
     let (a, b) = (&problem.local[i].k, &problem.local[j].k);
     jump.delta[i] == jump.delta[j]
@@ -123,7 +123,7 @@ pub(super) fn same_pattern(problem: &Substructures, jump: &Jump, i: usize, j: us
 }
 
 /// φ with K_j = φ K_i if the subdomains are equal, `None` otherwise.
-pub fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<f64> {
+pub fn multiple(problem: &Problem, jump: &Jump, i: usize, j: usize) -> Option<f64> {
     if !same_pattern(problem, jump, i, j) {
         return None;
     }

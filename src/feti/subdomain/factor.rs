@@ -14,7 +14,7 @@ use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{Adaptive, MethodSettings, PcType, Scaling};
 use crate::feti::subdomain::equal;
-use crate::substructures::{Subdomain, Substructures};
+use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use cholesky::interior::{Analysed, Analysis, Condenser, NoFactor};
 use cholesky::multifrontal::SingularInterior;
@@ -32,7 +32,7 @@ pub(crate) struct Factored {
 /// Factors one subdomain of each kind. `kept` has what of them is known already; it may be empty.
 pub(crate) fn factor(
     session: &Session,
-    problem: &Substructures,
+    problem: &Problem,
     jump: &Jump,
     team: &Team,
     (settings, kind): (&MethodSettings, PcType),
@@ -202,7 +202,7 @@ fn same_pattern(a: &Kind, b: &Kind) -> bool {
 }
 
 /// The error for the user when subdomain `sub` cannot be factored.
-pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFactor) -> Error {
+pub(crate) fn no_factor(problem: &Problem, sub: &Subdomain, error: NoFactor) -> Error {
     match error {
         NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {
             unfit_matrix(problem, sub, dof)
@@ -218,7 +218,7 @@ fn slack(sub: &Subdomain, interface: [&[u32]; 2]) -> Option<u32> {
 }
 
 /// The error for a row of zeros at a dof of the interface.
-pub(crate) fn no_stiffness(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
+pub(crate) fn no_stiffness(problem: &Problem, sub: &Subdomain, dof: u32) -> Error {
     let place = sub.coordinates.as_ref().map(|c| c[dof as usize]);
     let place = place.map_or(String::new(), |[x, y, z]| format!(", at ({x}, {y}, {z})"));
     Error::unfit(format!(
@@ -229,7 +229,7 @@ pub(crate) fn no_stiffness(problem: &Substructures, sub: &Subdomain, dof: u32) -
     .at(problem.location(&[sub.body as u32]))
 }
 
-fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
+fn unfit_matrix(problem: &Problem, sub: &Subdomain, dof: u32) -> Error {
     Error::unfit(format!(
         "the matrix of subdomain {} in body \"{}\" is not positive semidefinite \
          (at local dof {dof}), expected a stiffness matrix",

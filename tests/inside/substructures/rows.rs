@@ -12,7 +12,7 @@ fn rows_travel_unchanged() {
         area: 0.125,
         ..RowLabel::new(RowSource::Obstacle(7), members)
     };
-    let given = InterfaceRow {
+    let given = Row {
         terms: vec![(9, 1.0)],
         gap: 0.0,
         kind: RowKind::Inequality,
@@ -27,7 +27,7 @@ fn rows_travel_unchanged() {
         (RowKind::Equality, true, RowState::Tied),
         (RowKind::Equality, false, RowState::Open),
     ] {
-        let given = InterfaceRow {
+        let given = Row {
             kind,
             ..given.clone()
         };

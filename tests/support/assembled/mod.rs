@@ -9,9 +9,10 @@ pub mod compare;
 
 use std::collections::BTreeMap;
 
-use super::qp::{Outcome, Qp, Row, Solved};
+use super::qp::{self, Outcome, Qp, Solved};
 use base::linalg::csr::Csr;
-use fetifeti::substructures::{InterfaceRow, RowKind, Substructures};
+use fetifeti::problem::RowKind;
+use fetifeti::{Problem, Row};
 use scene::Scene;
 
 /// The place of a row of the scene in the problem.
@@ -29,7 +30,7 @@ pub struct Assembled {
     /// Body dof of each unknown, increasing.
     pub dofs: Vec<u64>,
     pub body: Vec<usize>,
-    pub rows: Vec<InterfaceRow>,
+    pub rows: Vec<Row>,
     pub place: Vec<Place>,
 }
 
@@ -53,7 +54,7 @@ impl Assembled {
     }
 
     /// Assembles the whole problem; `problem` must contain all subdomains and rows.
-    pub fn new(problem: &Substructures) -> Assembled {
+    pub fn new(problem: &Problem) -> Assembled {
         assert_eq!(problem.local.len(), problem.n_subdomains);
         let mut body_of = BTreeMap::new();
         for s in &problem.local {
@@ -97,17 +98,15 @@ impl Assembled {
                 .iter()
                 .map(|&(d, b)| (find(&dofs, d), b))
                 .collect();
-            let row_here = Row::new(terms, row.gap);
-            place.push(match row.kind {
-                RowKind::Equality if !row.holds => Place::Nowhere,
-                RowKind::Equality => {
-                    equal.push(row_here);
-                    Place::Equal(equal.len() - 1)
-                }
-                RowKind::Inequality => {
-                    below.push(row_here);
-                    Place::Below(below.len() - 1)
-                }
+            let row_here = qp::Row::new(terms, row.gap);
+            place.push(if row.kind == RowKind::Inequality {
+                below.push(row_here);
+                Place::Below(below.len() - 1)
+            } else if row.holds {
+                equal.push(row_here);
+                Place::Equal(equal.len() - 1)
+            } else {
+                Place::Nowhere
             });
         }
         Assembled {

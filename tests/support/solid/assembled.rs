@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use fetifeti::substructures::Substructures;
+use fetifeti::Problem;
 
 /// The solution by local dof of every subdomain; all rows must be ties u_a = u_b.
-pub fn solve(problem: &Substructures) -> Vec<Vec<f64>> {
+pub fn solve(problem: &Problem) -> Vec<Vec<f64>> {
     // Body dofs that are tied by rows are one unknown.
     let mut leader: BTreeMap<u64, u64> = BTreeMap::new();
     fn find(leader: &BTreeMap<u64, u64>, mut dof: u64) -> u64 {

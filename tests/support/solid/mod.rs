@@ -6,9 +6,8 @@ mod element;
 use std::collections::BTreeMap;
 
 use base::linalg::csr::Csr;
-use fetifeti::substructures::{
-    Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
-};
+use fetifeti::problem::{Entity, EntityKind, RowLabel, RowSource};
+use fetifeti::{Problem, Row, Subdomain};
 
 /// The material of the bodies.
 #[derive(Clone, Copy, PartialEq)]
@@ -213,27 +212,23 @@ impl Solid {
                 (3, 1) => EntityKind::Face,
                 _ => continue,
             };
-            let entity = entities.entry((side, *c)).or_insert(Entity {
+            let entity = entities.entry((side, *c)).or_insert(Entity::new(
                 kind,
-                key: self.dof(body, *x, *c),
-                dofs: Vec::new(),
-            });
+                self.dof(body, *x, *c),
+                Vec::new(),
+            ));
             entity.dofs.push(i as u32);
         }
         let at = |x: [usize; 3]| [0, 1, 2].map(|d| if d < dim { x[d] as f64 * h } else { 0.0 });
-        Subdomain {
-            idle: Vec::new(),
-            index,
-            body,
-            k: Csr::from_triplets(n, &triplets).into(),
-            f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
-            dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
-            rho,
-            primal,
-            entities: entities.into_values().collect(),
-            near_kernel: Some(self.motions(b, &nodes)),
-            coordinates: Some(nodes.iter().map(|&(x, _)| at(x)).collect()),
-        }
+        let k = Csr::from_triplets(n, &triplets);
+        let f = nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect();
+        let dofs = nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect();
+        Subdomain::new(index, body, k, f, dofs)
+            .with_rho(rho)
+            .with_primal(primal)
+            .with_entities(entities.into_values().collect())
+            .with_near_kernel(self.motions(b, &nodes))
+            .with_coordinates(nodes.iter().map(|&(x, _)| at(x)).collect())
     }
 
     /// A load without a pattern; the loads of the copies of a dof add up.
@@ -316,7 +311,7 @@ impl Solid {
 
     /// The substructures of one rank; `mine` says which subdomains it owns. The owner of a body's subdomain 0 provides
     /// its rows.
-    pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Substructures {
+    pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Problem {
         let n = self.per_side() + 1;
         let per_body = self.subdomains.pow(self.dim as u32);
         let mut rows = Vec::new();
@@ -326,29 +321,18 @@ impl Solid {
             for (a, b, c, holds) in pairs.iter().copied() {
                 let home = pairs.iter().filter(|p| p.2 == c).map(|p| p.0).min();
                 if mine(home.expect("the pair itself") * per_body) {
-                    rows.push(InterfaceRow {
-                        terms: vec![(self.dof(a, x, c), 1.0), (self.dof(b, x, c), -1.0)],
-                        gap: 0.0,
-                        kind: RowKind::Equality,
-                        holds,
-                        block: (i * self.components() + c) as u64,
-                        rounding: 0.0,
-                        label: RowLabel::new(RowSource::Interface(0), [None; 2]),
-                    });
+                    let terms = [(self.dof(a, x, c), 1.0), (self.dof(b, x, c), -1.0)];
+                    let block = (i * self.components() + c) as u64;
+                    let label = RowLabel::new(RowSource::Interface(0), [None; 2]);
+                    let row = Row::equality(terms, 0.0).held(holds);
+                    rows.push(row.in_block(block).with_label(label));
                 }
             }
         }
-        Substructures {
-            n_bodies: self.n_bodies(),
-            n_subdomains: self.n_subdomains(),
-            ragged: false,
-            body_names: (0..self.n_bodies()).map(|b| format!("b{b}")).collect(),
-            weak: Vec::new(),
-            local: (0..self.n_subdomains())
-                .filter(|&s| mine(s))
-                .map(|s| self.subdomain(s))
-                .collect(),
-            rows,
-        }
+        let names = (0..self.n_bodies()).map(|b| format!("b{b}"));
+        let here = (0..self.n_subdomains()).filter(|&s| mine(s));
+        Problem::new(names, self.n_subdomains())
+            .with_subdomains(here.map(|s| self.subdomain(s)))
+            .with_rows(rows)
     }
 }

@@ -33,8 +33,8 @@ pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
 /// Reads a file. To be called on one rank.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path, what was found and what was expected, for anything but a whole checkpoint of this
-/// version.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) with the path, what was found and what was expected, for anything but a
+/// whole checkpoint of this version.
 pub fn read(path: &Path) -> Result<Checkpoint> {
     let name = path.display();
     let refused = |e| {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Location, Result};
-use fetifeti::contact::State;
+use fetifeti::solution::State;
 use fetifeti::FetiFeti;
 use petsc::Session;
 use report::json::contact::{LoadStep, OuterStep};

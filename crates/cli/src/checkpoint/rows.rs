@@ -16,8 +16,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Result};
-use fetifeti::contact::State;
-use fetifeti::feti::LinearMethod;
+use fetifeti::inside::LinearMethod;
+use fetifeti::solution::State;
 use parallel::exchange::exchange_words;
 use petsc::Session;
 
@@ -129,6 +129,8 @@ impl Layout {
         let parts = to_first(session, state);
         let first = parts.first()?;
         let all = self.local.iter().chain(&self.blocks);
+        let lambda = all.flat_map(|c| &parts[c.rank].lambda[c.rows()]);
+        let lambda = lambda.copied().collect();
         let set = |of: fn(&State) -> &[bool]| -> Vec<bool> {
             let rows = self.blocks.iter();
             rows.flat_map(|c| &of(&parts[c.rank])[c.rows()])
@@ -138,15 +140,7 @@ impl Layout {
         Some(GlobalState {
             local: self.local.iter().map(|c| c.n as u64).collect(),
             blocks: self.blocks.iter().map(|c| (c.key, c.n as u64)).collect(),
-            all: State {
-                lambda: all
-                    .flat_map(|c| &parts[c.rank].lambda[c.rows()])
-                    .copied()
-                    .collect(),
-                active: set(|s| &s.active),
-                before: set(|s| &s.before),
-                ..first.clone()
-            },
+            all: first.on_rows(lambda, set(|s| &s.active), set(|s| &s.before)),
         })
     }
 
@@ -176,12 +170,7 @@ impl Layout {
     /// The states of all ranks.
     fn deal(&self, global: &GlobalState) -> Vec<State> {
         let all = &global.all;
-        let part = |&n: &usize| State {
-            lambda: vec![0.0; n],
-            active: vec![true; n],
-            before: vec![true; n],
-            ..all.clone()
-        };
+        let part = |&n: &usize| all.on_rows(vec![0.0; n], vec![true; n], vec![true; n]);
         let mut out: Vec<State> = self.owned.iter().map(part).collect();
         let mut next = 0;
         for c in self.local.iter().chain(&self.blocks) {

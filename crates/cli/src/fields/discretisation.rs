@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use super::materials::Materials;
 use super::{shared, Place};
 use base::Result;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
 use petsc::Session;

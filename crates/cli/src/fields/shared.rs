@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use parallel::exchange::exchange_words;
 use petsc::Session;
 use scene::assembly::recovery::Sum;

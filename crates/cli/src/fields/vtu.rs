@@ -8,7 +8,7 @@ use crate::smoothed::smoothed;
 use base::Result;
 use elements::cell::CellStress;
 use elements::element::{principal_stresses, NodeStress};
-use fetifeti::substructures::SolvedRow;
+use fetifeti::solution::SolvedRow;
 use fetifeti::Solution;
 use parallel::exchange::any;
 use petsc::Session;

@@ -2,7 +2,7 @@
 
 use super::super::rows::GlobalState;
 use super::*;
-use fetifeti::contact::{Progress, State};
+use fetifeti::solution::State;
 
 fn example() -> Checkpoint {
     Checkpoint {
@@ -14,19 +14,18 @@ fn example() -> Checkpoint {
         state: GlobalState {
             local: vec![2, 0, 1],
             blocks: vec![(7, 2), (40, 1)],
-            all: State {
-                lambda: vec![0.5, -1e-300, f64::MAX, 3.0, 0.0, -0.0],
-                active: vec![true, false, true],
-                before: vec![true, true, false],
-                reference: 0.1,
-                steps: 12,
-                progress: Progress::default(),
-                safeguarded: true,
-                accuracy: 0.01,
-                mu: vec![-2.5],
-            },
+            all: state(),
         },
     }
+}
+
+fn state() -> State {
+    let lambda = vec![0.5, -1e-300, f64::MAX, 3.0, 0.0, -0.0];
+    let mut state = State::warm(lambda, &[true, false, true]);
+    state.before = vec![true, true, false];
+    (state.reference, state.steps, state.accuracy) = (0.1, 12, 0.01);
+    (state.safeguarded, state.mu) = (true, vec![-2.5]);
+    state
 }
 
 #[test]

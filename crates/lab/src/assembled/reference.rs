@@ -14,7 +14,8 @@ use super::system::{Copies, Format};
 use super::unknowns::Unknowns;
 use crate::assembled::outer;
 use base::{Error, Result};
-use fetifeti::substructures::{idle, Subdomain};
+use fetifeti::inside::idle;
+use fetifeti::Subdomain;
 use parallel::contiguous_share;
 use parallel::exchange::{max_all, sum_all};
 use petsc::{Comm, Ksp, Session, Vec as PetscVec};
@@ -53,7 +54,8 @@ impl<'a> Reference<'a> {
     /// whether there is a solution. Collective.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) where the inequalities have no frames; those of the scene, and PETSc's.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where the inequalities have no frames; those of the scene, and
+    /// PETSc's.
     pub fn new(
         session: &Session,
         scene: &Scene,
@@ -117,8 +119,8 @@ impl<'a> Reference<'a> {
     /// Collective.
     ///
     /// # Errors
-    /// As [`Reference::new`]; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where no solution satisfies the conditions, such as where nothing
-    /// holds a body.
+    /// As [`Reference::new`]; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) where no solution satisfies
+    /// the conditions, such as where nothing holds a body.
     pub fn certified(
         session: &Session,
         scene: &Scene,

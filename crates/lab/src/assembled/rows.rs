@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use super::layout::Layout;
 use super::motions::{Echelon, Functional};
 use super::potentials::Potentials;
-use fetifeti::substructures::RowKind;
+use fetifeti::problem::RowKind;
 use scene::Scene;
 
 /// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for

@@ -9,7 +9,7 @@ use super::layout::Layout;
 use super::system::System;
 use base::linalg::strained::{strained, RIGID};
 use base::Result;
-use fetifeti::substructures::Subdomain;
+use fetifeti::Subdomain;
 use parallel::contiguous_share;
 use parallel::exchange::sum_all;
 use petsc::{Scatter, Session, Vec as PetscVec};

@@ -4,7 +4,7 @@
 //! set the system is Tᵀ K T v = Tᵀ(f − K u₀).
 
 use base::Result;
-use fetifeti::substructures::Subdomain;
+use fetifeti::Subdomain;
 use parallel::contiguous_share;
 use petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
 use scene::Scene;

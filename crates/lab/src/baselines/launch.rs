@@ -103,8 +103,8 @@ impl Launcher {
     /// the job leaves is the file beside it that ends in `json`.
     ///
     /// # Errors
-    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) where the job cannot be started at all: no disk, no mpirun; or where its record cannot be
-    /// read.
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) where the job cannot be started at all: no disk, no
+    /// mpirun; or where its record cannot be read.
     pub fn run<T: DeserializeOwned>(
         &self,
         name: &str,

@@ -83,7 +83,7 @@ impl<'a> Methods<'a> {
     /// try; where `rescued` says that it has needed them before, they are used at once.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] where a job cannot be started at all.
+    /// [`base::ErrorKind::Environment`] where a job cannot be started at all.
     pub fn run(&mut self, k: usize, rescued: bool) -> Result<Ran> {
         let run = &self.plan.runs[k];
         if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {

@@ -11,9 +11,8 @@ use crate::assembled::rows::Inequalities;
 use crate::assembled::system::{Copies, Format};
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::Subdomain;
-use fetifeti::{FetiFeti, Solution};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{FetiFeti, Solution, Subdomain};
 use parallel::exchange::{gather_all, max_all};
 use parallel::meter::{memory, timed};
 use petsc::{Options, Session, Vec as PetscVec};
@@ -32,12 +31,8 @@ pub fn solve(
 ) -> Result<Outcome> {
     Options::new(session, "fetifeti_").set_default("threads", &threads.to_string())?;
     let (substructures, assemble) = timed(session, || distribution::substructures(session, scene))?;
-    let settings = MethodSettings {
-        rtol: job.rtol,
-        // Recycled directions of one attempt would shorten the next one, which is the one that is timed.
-        recycle: 0,
-        ..MethodSettings::default()
-    };
+    // Recycled directions of one attempt would shorten the next one, which is the one that is timed.
+    let settings = MethodSettings::default().rtol(job.rtol).recycle(0);
     let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     // The assembled matrix serves for the residual only: its time and memory do not count.
     let layout = Layout::new(scene);

@@ -91,7 +91,8 @@ impl Plan {
     /// The plan according to the options.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose load steps renew its contacts.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose load steps renew
+    /// its contacts.
     pub fn new(
         session: &Session,
         scene: &Scene,

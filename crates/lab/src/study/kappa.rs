@@ -8,8 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Result};
-use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::{MethodSettings, PcType};
+use fetifeti::settings::{Adaptive, MethodSettings, PcType};
 use fetifeti::FetiFeti;
 use parallel::contiguous_share;
 use petsc::Session;
@@ -154,14 +153,12 @@ pub fn grid(
     let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
     parallel::exchange::sum_all(session.comm(), &mut dofs);
     let found = |pc: PcType| -> Result<KappaOf> {
-        let settings = MethodSettings {
-            pc_type: Some(pc),
-            rtol: 1e-9,
-            // κ of the preconditioner alone.
-            adaptive: Adaptive::Off,
-            ..MethodSettings::default()
-        };
-        let solver = FetiFeti::new(session, problem.clone(), settings)?;
+        // κ of the preconditioner alone.
+        let settings = MethodSettings::default()
+            .pc_type(pc)
+            .rtol(1e-9)
+            .adaptive(Adaptive::Off);
+        let mut solver = FetiFeti::new(session, problem.clone(), settings)?;
         let solution = solver.solve()?;
         if !solution.converged() {
             return Err(Error::not_converged(format!(

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use base::Result;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::SolvedRow;
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
 use fetifeti::{FetiFeti, Solution};
 use mesh::bytes;
 use petsc::Session;
@@ -38,7 +38,7 @@ impl Solved {
         let (solver, solution, seconds) = distribution::with_options(session, &scene, || {
             let clock = Instant::now();
             let substructures = distribution::substructures(session, &scene)?;
-            let solver = FetiFeti::new(session, substructures, settings.clone())?;
+            let mut solver = FetiFeti::new(session, substructures, settings.clone())?;
             let solution = solver.solve()?;
             Ok((solver, solution, clock.elapsed().as_secs_f64()))
         })?;

@@ -4,7 +4,8 @@ use super::*;
 use crate::assembled::reference::{Precision, Reference};
 use crate::assembled::rows::Inequalities;
 use crate::testing::with_session;
-use fetifeti::substructures::{RowKind, Subdomain};
+use fetifeti::problem::RowKind;
+use fetifeti::Subdomain;
 use scene::Scene;
 
 /// An elastic block on another one with other elements, a gap between them, the common face inclined; `order` and more
@@ -88,7 +89,7 @@ fn inequalities_bound_single_unknowns() {
             terms.iter().map(|&(w, c)| c * value(w)).sum::<f64>() + offset
         };
         let all = scene.rows(&|_| true);
-        let jump = |row: &InterfaceRow| row.terms.iter().map(|&(dof, b)| b * u(dof)).sum::<f64>();
+        let jump = |row: &Row| row.terms.iter().map(|&(dof, b)| b * u(dof)).sum::<f64>();
         let inequalities = all.iter().filter(|r| r.kind == RowKind::Inequality);
         let mut combined = 0;
         for (row, bound) in inequalities.zip(&rows.rows) {
@@ -131,7 +132,7 @@ fn the_equations_of_a_set_are_the_saddle_point_problem() {
         for (what, scene) in scenes() {
             let layout = Layout::new(&scene);
             let all = scene.rows(&|_| true);
-            let inequalities: Vec<&InterfaceRow> = all
+            let inequalities: Vec<&Row> = all
                 .iter()
                 .filter(|r| r.kind == RowKind::Inequality)
                 .collect();

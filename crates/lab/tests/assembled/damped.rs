@@ -7,7 +7,8 @@ use crate::assembled::reference::{mumps, Precision, Reference};
 use crate::assembled::unknowns::Unknowns;
 use crate::study::hard_cases::cases;
 use crate::testing::with_session;
-use fetifeti::{FetiFeti, MethodSettings, Settings};
+use fetifeti::settings::MethodSettings;
+use fetifeti::{FetiFeti, Settings};
 use scene::Scene;
 
 /// ψ'(t) by its definition: the part without springs, and all springs that push.
@@ -144,12 +145,9 @@ fn walls_have_the_energy_of_the_method() {
             let half = 0.5 * system.energy_norm(u).expect("a norm").powi(2);
             let energy = half - system.b.dot(u).expect("a product");
 
-            let settings = Settings::from(MethodSettings {
-                rtol: 1e-10,
-                ..MethodSettings::default()
-            });
+            let settings = Settings::from(MethodSettings::default().rtol(1e-10));
             let problem = scene.substructures(&|_| true).expect("subdomains");
-            let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+            let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
             let solution = solver.solve().expect("it has a solution");
             assert!(solution.converged(), "{name}: {}", solution.status);
             let off = (solution.energy - energy).abs() / energy.abs();

@@ -47,7 +47,7 @@ impl Raster {
     /// Writes the picture as PNG.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn write_png(&self, path: &std::path::Path) -> Result<()> {
         output::write_file(path, |out| {
             let mut encoder = png::Encoder::new(out, self.pixels.width(), self.pixels.height());

@@ -38,7 +38,7 @@ impl Svg {
     /// Writes the picture.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn write(&self, path: &Path) -> Result<()> {
         output::write_text(path, &self.to_text())
     }

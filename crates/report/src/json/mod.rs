@@ -45,7 +45,8 @@ pub fn write<T: Serialize>(path: &Path, record: &T) -> Result<()> {
 /// Indented JSON of any record.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment) when the record has no JSON form (a map whose keys are not strings).
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) when the record has no JSON form (a map whose keys are not
+/// strings).
 pub fn to_string<T: Serialize>(record: &T) -> Result<String> {
     serde_json::to_string_pretty(record)
         .map_err(|e| Error::environment("cannot write a result as JSON").because(e))

@@ -6,7 +6,7 @@ use super::contact::ContactReport;
 use super::number;
 use super::probes::{NodePrint, ProbeValue};
 use super::spectrum::Condition;
-use fetifeti::feti::Communication;
+use fetifeti::solution::Communication;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -236,7 +236,7 @@ pub struct Kkt {
 
 impl Kkt {
     /// The record of these residuals.
-    pub fn new(kkt: &fetifeti::feti::Kkt, inequalities: bool) -> Kkt {
+    pub fn new(kkt: &fetifeti::solution::Kkt, inequalities: bool) -> Kkt {
         Kkt {
             stationarity: kkt.stationarity,
             feasibility: kkt.feasibility,

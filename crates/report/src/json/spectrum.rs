@@ -41,8 +41,8 @@ impl Spectrum {
     }
 }
 
-impl From<fetifeti::Spectrum> for Spectrum {
-    fn from(s: fetifeti::Spectrum) -> Spectrum {
+impl From<fetifeti::solution::Spectrum> for Spectrum {
+    fn from(s: fetifeti::solution::Spectrum) -> Spectrum {
         Spectrum {
             settled: s.settled,
             ..Spectrum::new(s.lambda_min, s.lambda_max)

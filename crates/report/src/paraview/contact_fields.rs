@@ -100,7 +100,8 @@ impl ContactFields {
     /// Adds the area of a candidate to a point; the candidate must have been added before.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the mesh has no such point or the area is negative or not finite.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the mesh has no such point or the area is negative or not
+    /// finite.
     pub fn add_area(&mut self, point: usize, area: f64) -> Result<()> {
         let n = self.multiplier.len();
         if point >= n || !(area >= 0.0 && area.is_finite()) {

@@ -25,8 +25,9 @@ impl Pvd {
     /// their directory can be moved. If the time exists already, as after a restart, its file is replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the time is not finite, is before the last one, or the file lies outside the collection's
-    /// directory; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path when the collection cannot be written.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the time is not finite, is before the last one, or the file
+    /// lies outside the collection's directory; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path
+    /// when the collection cannot be written.
     pub fn add(&mut self, t: f64, file: &Path) -> Result<()> {
         let known = self.entries.iter().position(|e| e.0 == t);
         let last = self.entries.last().map_or(f64::NEG_INFINITY, |e| e.0);

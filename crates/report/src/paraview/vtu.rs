@@ -131,7 +131,8 @@ impl<'a> Vtu<'a> {
     /// Writes the file.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) when an array does not fit the grid; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when an array does not fit the grid;
+    /// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
     pub fn write(&self, path: &Path) -> Result<()> {
         self.check()?;
         output::write_file(path, |out| self.fill(out))

@@ -87,7 +87,8 @@ impl ContactMap {
 /// Writes `interfaces.png` and `interfaces.csv` into a directory; returns their paths. The CSV has all interfaces.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) when the lists of an interface differ in length; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) when the lists of an interface differ in length;
+/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
 pub fn write(maps: &[ContactMap], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     maps.iter().try_for_each(ContactMap::check)?;
     let [png, csv] = ["interfaces.png", "interfaces.csv"].map(|name| dir.join(name));

@@ -23,7 +23,7 @@ pub use super::values::Field;
 /// the bodies are `displaced`, every body has its own outline, with a thin outline of its undeformed shape.
 ///
 /// # Errors
-/// [`base::Error::Input`] when an array does not fit the mesh; [`base::Error::Environment`] with the path.
+/// [`base::ErrorKind::Input`] when an array does not fit the mesh; [`base::ErrorKind::Environment`] with the path.
 pub fn write(
     beside: &Beside,
     mesh: &Mesh,

@@ -34,7 +34,7 @@ const BETTER: f64 = 1.6;
 /// faces in `marks` that may touch.
 ///
 /// # Errors
-/// [`base::Error::Input`] when an array does not fit the mesh; [`base::Error::Environment`] with the path.
+/// [`base::ErrorKind::Input`] when an array does not fit the mesh; [`base::ErrorKind::Environment`] with the path.
 pub fn write_solution(
     solid: &Solid,
     fields: &[Field],

@@ -61,7 +61,7 @@ pub fn figure(rows: &[Table1Row]) -> Figure {
 /// Writes `stem`.png and `stem`.svg; returns their paths.
 ///
 /// # Errors
-/// [`base::Error::Environment`] with the path.
+/// [`base::ErrorKind::Environment`] with the path.
 pub fn figure3(rows: &[Table1Row], stem: &Path) -> Result<Vec<PathBuf>> {
     figure(rows).save(stem)
 }

@@ -66,7 +66,7 @@ pub fn csv(steps: &[LoadStep]) -> Table {
 /// Writes `steps.png`, `steps.svg` and `steps.csv` into a directory; returns their paths.
 ///
 /// # Errors
-/// [`base::Error::Environment`] with the path.
+/// [`base::ErrorKind::Environment`] with the path.
 pub fn write(steps: &[LoadStep], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(steps, title).save(&dir.join("steps"))?;
     let table = dir.join("steps.csv");

@@ -48,7 +48,7 @@ impl Figure {
     /// Writes `stem`.png (two pixels per logical pixel) and `stem`.svg; returns their paths.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn save(&self, stem: &Path) -> Result<Vec<PathBuf>> {
         let (width, height) = self.size();
         let named = |extension: &str| {

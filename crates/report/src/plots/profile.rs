@@ -162,7 +162,7 @@ impl Profile {
 /// The figure: the interfaces with the largest forces, each with its multiplier above its gap.
 ///
 /// # Errors
-/// [`base::Error::Input`] when the arrays of an interface differ in length.
+/// [`base::ErrorKind::Input`] when the arrays of an interface differ in length.
 pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
     profiles.iter().try_for_each(|p| p.nodes.check(&[]))?;
     let known = profiles.iter().filter(|p| !p.nodes.t.is_empty());
@@ -199,8 +199,8 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 /// all interfaces.
 ///
 /// # Errors
-/// [`base::Error::Input`] when the lists of an interface differ in length; [`base::Error::Environment`] with the
-/// path.
+/// [`base::ErrorKind::Input`] when the lists of an interface differ in length; [`base::ErrorKind::Environment`] with
+/// the path.
 pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");

@@ -3,7 +3,7 @@
 use super::contact as contact_summary;
 use super::table::{count, fixed, scientific, Table};
 use crate::json::{PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
-use fetifeti::feti::Communication;
+use fetifeti::solution::Communication;
 use fetifeti::Status;
 
 /// The result of `solve` as lines "name  value".

@@ -60,7 +60,7 @@ impl Table {
     /// Writes [`Table::to_csv`] to a file, or to standard output for `-`.
     ///
     /// # Errors
-    /// [`base::Error::Environment`] with the path.
+    /// [`base::ErrorKind::Environment`] with the path.
     pub fn write_csv(&self, path: &Path) -> Result<()> {
         output::write_text(path, &self.to_csv())
     }

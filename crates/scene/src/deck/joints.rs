@@ -6,7 +6,7 @@ use crate::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 use crate::model::profile::Profile;
 use base::{Location, Result};
 use deck::{Adjust, ContactPair, Deck, Overclosure, SurfaceName, Tie};
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use mesh::Members;
 use std::collections::{BTreeSet, HashSet};
 

@@ -21,7 +21,7 @@ use bodies::Extracted;
 use deck::{Deck, Model};
 use elements::cell::{Cure, Plane};
 use elements::form::{Form, Physics};
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use mesh::bytes;
 use numbers::Numbers;
 

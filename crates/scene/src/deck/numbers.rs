@@ -1,7 +1,7 @@
 //! Which body has which cells and nodes of a deck.
 
 use deck::Deck;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use mesh::partition::Components;
 
 /// The bodies of a deck, in numbers.

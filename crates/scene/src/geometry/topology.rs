@@ -3,7 +3,7 @@
 use crate::assembly::{Grid, SubdomainMesh};
 use crate::body::Body;
 use elements::cell;
-use fetifeti::substructures::{Entity, EntityKind};
+use fetifeti::problem::{Entity, EntityKind};
 use mesh::{places, CellMesh, Mesh};
 use std::collections::BTreeMap;
 
@@ -39,17 +39,19 @@ fn of_cells(cells: &CellMesh, inside: usize, mesh: &SubdomainMesh, dofs: &[u64])
             };
             let list: Vec<u32> = list.iter().filter_map(local).collect();
             let Some(first) = list.first() else { continue };
-            out.push(Entity {
-                kind: match dim {
-                    1 => EntityKind::Edge,
-                    _ => EntityKind::Face,
-                },
-                key: dofs[*first as usize],
-                dofs: list,
-            });
+            let key = dofs[*first as usize];
+            out.push(Entity::new(kind(dim), key, list));
         }
     }
     out
+}
+
+/// An edge or a face, by its dimension.
+fn kind(dim: usize) -> EntityKind {
+    match dim {
+        1 => EntityKind::Edge,
+        _ => EntityKind::Face,
+    }
 }
 
 fn of_grid(mesh: &SubdomainMesh, grid: &Grid, dofs: &[u64]) -> Vec<Entity> {
@@ -72,13 +74,9 @@ fn of_grid(mesh: &SubdomainMesh, grid: &Grid, dofs: &[u64]) -> Vec<Entity> {
             }
         }
     }
-    let entity = |((_, code), list): ((usize, [u8; 3]), Vec<u32>)| Entity {
-        kind: match code.iter().filter(|&&k| k == 2).count() {
-            1 => EntityKind::Edge,
-            _ => EntityKind::Face,
-        },
-        key: dofs[list[0] as usize],
-        dofs: list,
+    let entity = |((_, code), list): ((usize, [u8; 3]), Vec<u32>)| {
+        let dim = code.iter().filter(|&&k| k == 2).count();
+        Entity::new(kind(dim), dofs[list[0] as usize], list)
     };
     found.into_iter().map(entity).collect()
 }

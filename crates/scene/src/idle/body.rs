@@ -13,7 +13,7 @@ use base::linalg::sorted::distinct;
 use elements::cell;
 use elements::element::strain_of;
 use elements::form::Form;
-use fetifeti::substructures::Idle;
+use fetifeti::problem::Idle;
 use mesh::Mesh;
 
 /// Coordinates with six digits leave motions without energy strains of 1e-6. What may be the kernel of a body is given
@@ -141,14 +141,8 @@ impl BodySlack {
     pub fn parts(&self, body: &Body, mesh: &SubdomainMesh, nodes: &[usize]) -> Vec<Idle> {
         let c = body.components;
         let part = |(number, motion): (u32, &Motion)| {
-            let mut out = Idle {
-                number,
-                dofs: Vec::new(),
-                values: Vec::new(),
-                shares: Vec::new(),
-                strain: self.strain,
-                what: self.what[number as usize].clone(),
-            };
+            let what = self.what[number as usize].clone();
+            let mut out = Idle::new(number, self.strain, what);
             for of_node in motion.chunk_by(|a, b| a.0 / c as u32 == b.0 / c as u32) {
                 let node = of_node[0].0 as usize / c;
                 let Ok(place) = nodes.binary_search(&node) else {

@@ -5,7 +5,7 @@ use super::ramp::Ramp;
 use super::rigid::Rigid;
 use super::rigid_surface::RigidSurface;
 use base::Location;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 
 /// The pairs of bodies to which an entry applies.
 #[derive(Debug, Clone, PartialEq, Eq)]

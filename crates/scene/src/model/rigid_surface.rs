@@ -25,8 +25,8 @@ impl RigidSurface {
     /// normals around.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) where there is no such group, where it has no faces, and where the normals of two neighbours
-    /// point to different sides.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) where there is no such group, where it has no faces, and where the
+    /// normals of two neighbours point to different sides.
     pub fn of_file(
         file: &MeshFile,
         dim: usize,

@@ -44,7 +44,7 @@ impl Steps {
                 }
             };
         };
-        let fail = |message: String| Err(Error::input(format!("{message}")).at(&steps.location));
+        let fail = |message: String| Err(Error::input(message).at(&steps.location));
         if steps.times.is_empty() {
             return fail("no times in [steps] where at least one was expected".into());
         }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::checked::Scene;
 use crate::geometry::interface::Shape;
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 impl Scene {
     /// Whether multipliers are reported as pressures, too: everywhere but in plane scalar problems.

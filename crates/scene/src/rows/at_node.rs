@@ -2,7 +2,7 @@
 
 use super::points::Along;
 use crate::body::Body;
-use fetifeti::BodyNode;
+use fetifeti::problem::BodyNode;
 
 /// Properties of a node, as the `bodies` of a scene have them.
 pub trait AtNode {

@@ -12,7 +12,7 @@ use crate::quantity::unfit_length;
 use crate::rows::at_node::AtNode;
 use crate::validate::agree;
 use base::{Error, Location, Result};
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 use std::collections::HashMap;
 
 /// The data against which inequalities are checked.
@@ -48,7 +48,9 @@ impl<'a> Checks<'a> {
 
     /// Drops the contact rows that ties or given values decide, and adds the rows of obstacles.
     ///
-    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) if ties or given values violate an inequality, or if two bounds contradict each other.
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) if ties or given values violate an inequality, or if two bounds
+    /// contradict each other.
     pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
         for point in points.iter_mut() {
             let mut rows = std::mem::take(&mut point.rows);

@@ -156,7 +156,11 @@ impl<'a> Entries<'a> {
             };
             let (a, b) = (find(first)?, find(second)?);
             if a == b && entry.own.is_none() {
-                return Err(Error::input(format!("a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)", entry.what())).at(entry.location));
+                return Err(Error::input(format!(
+                    "a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)",
+                    entry.what()
+                ))
+                .at(entry.location));
             }
             let pair = [a.min(b), a.max(b)];
             let list: &mut Vec<_> = entries.named.entry(pair).or_default();

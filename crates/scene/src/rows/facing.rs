@@ -9,7 +9,7 @@ use crate::geometry::{mortar, overlap};
 use crate::model::joints::{Extent, Pair};
 use crate::model::spec::SceneSpec;
 use base::{Error, Location, Result};
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 use std::collections::{HashMap, HashSet};
 
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair. Of ties with a

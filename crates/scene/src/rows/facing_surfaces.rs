@@ -18,7 +18,7 @@ use crate::model::rigid_surface::RigidSurface;
 use base::linalg::vec3::{dot, minus, norm};
 use elements::form::Form;
 use elements::mortar::Face;
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 /// The part of a rigid surface that lies opposite a side of a body.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::origin::Origin;
 use crate::body::Body;
 use crate::geometry::interface::Interface;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 
 /// Entries that have a sentence of their own.
 const LIST: usize = 8;

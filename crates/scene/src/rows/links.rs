@@ -101,8 +101,12 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             None => self.ordered = Some((entry, order)),
             Some((other, known)) if *known != order => {
                 let [a, b] = order.map(|k| &self.bodies[k].spec.name);
-                return Err(Error::input(format!("the contact names bodies `{a}` and `{b}` in the other order than the contact of {} \
-                     (the second body lies above the first, one order for a pair was expected)", other.line())).at(entry.location));
+                return Err(Error::input(format!(
+                    "the contact names bodies `{a}` and `{b}` in the other order than the contact of {} (the second \
+                     body lies above the first, one order for a pair was expected)",
+                    other.line()
+                ))
+                .at(entry.location));
             }
             Some(_) => {}
         }

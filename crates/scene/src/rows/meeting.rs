@@ -4,7 +4,7 @@ use super::reach::Reach;
 use crate::body::Body;
 use crate::geometry::interface::{Interface, Link};
 use base::linalg::union_find::UnionFind;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 
 /// Two members of a set that share a node of an interface.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@
 //!     1  TieSpec, ContactSpec, ObstacleSpec   what the user writes, for whole faces
 //!     2  Interface, Obstacle                  node by node: how it is joined, normal, distance, bounds of all entries
 //!     3  PointRow                             at a point: members, direction, right-hand side; decided rows are gone
-//!     4  InterfaceRow                         in the joint: coefficients by body dof, and a RowLabel
+//!     4  Row                         in the joint: coefficients by body dof, and a RowLabel
 //!     5  a row of B                           in the method: owned, in a block, it holds or not
 //!
 //!     SolvedRow                               label, gap, multiplier, pressure, state

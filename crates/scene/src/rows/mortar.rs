@@ -12,7 +12,7 @@ use crate::geometry::mortar_sides::{BodyRow, Surfaces};
 use base::linalg::vec3::dot;
 use base::Result;
 use elements::form::Form;
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 /// The rows of all interfaces that have surfaces, which are freed, after those that are known already, and sentences on
 /// nodes that are left out. A node that is tied carries no multiplier of another tie or of a contact.

@@ -2,7 +2,7 @@
 
 use super::points::Inequality;
 use crate::model::steps::Factors;
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 /// A row between two sides: Σ coefficient · u = 0 (tie) or ≤ g (contact), along a direction. The second side may be a
 /// rigid surface.

@@ -128,7 +128,7 @@ pub(crate) fn find(
     // Bodies that have moved may have left an obstacle.
     let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
-        let fail = |message: String| Err(Error::input(format!("{message}")).at(&entry.location));
+        let fail = |message: String| Err(Error::input(message).at(&entry.location));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
         let elastic = entry.rigid.is_some() || entry.surface.is_some();
         let bounds = if elastic {
@@ -304,8 +304,12 @@ fn select(body: &Body, side: usize, entry: &ObstacleSpec) -> Result<Vec<(usize, 
     let t = parameters(&body.spec, side, &nodes);
     let (name, side) = (&body.spec.name, mesh.side_name(side));
     let picked = pick(&entry.extent, &t).map_err(|missing| {
-        Error::input(format!("the obstacle of body `{name}` names the node with {missing}, but its side {side} has {} nodes and none \
-             like that", nodes.len())).at(&entry.location)
+        Error::input(format!(
+            "the obstacle of body `{name}` names the node with {missing}, but its side {side} has {} nodes and none \
+             like that",
+            nodes.len()
+        ))
+        .at(&entry.location)
     })?;
     if picked.is_empty() && entry.extent != Extent::None {
         return Err(Error::input(format!(

@@ -11,7 +11,7 @@ use crate::rows::at_node::AtNode;
 use crate::validate::agree;
 use base::linalg::union_find::UnionFind;
 use base::{Error, Result};
-use fetifeti::substructures::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, RowSource};
 
 /// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
 #[derive(Debug, Clone, PartialEq)]

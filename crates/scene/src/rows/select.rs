@@ -121,8 +121,13 @@ pub(crate) fn selected(
             }
         }
         let [a, b] = interface.bodies.map(|k| &bodies[k].spec.name);
-        Error::input(format!("the {} of bodies `{a}` and `{b}` names the node with {missing}, but their common face has {} nodes \
-             and none like that", entry.what(), interface.shared.len())).at(entry.location)
+        Error::input(format!(
+            "the {} of bodies `{a}` and `{b}` names the node with {missing}, but their common face has {} nodes and \
+             none like that",
+            entry.what(),
+            interface.shared.len()
+        ))
+        .at(entry.location)
     })
 }
 

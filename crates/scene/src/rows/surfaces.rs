@@ -167,8 +167,12 @@ fn pairs(
     let Some(last) = last else {
         let body = lists[0].first().or(lists[1].first());
         let body = body.map_or("", |b| bodies[b.0].spec.name.as_str());
-        return Err(Error::input(format!("the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
-             expected, or two sides of one body: the parts of its surface that meet)", names[0])).at(location));
+        return Err(Error::input(format!(
+            "the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were expected, or two \
+             sides of one body: the parts of its surface that meet)",
+            names[0]
+        ))
+        .at(location));
     };
     let found = |first: (usize, usize), second: (usize, usize)| {
         let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
@@ -283,7 +287,8 @@ fn found(
         }
     }
     if out.is_empty() {
-        Err(Error::input("no two bodies are near each other with opposite normals (a larger `distance` was expected)").at(&auto.location))
+        let message = "no two bodies are near each other with opposite normals (a larger `distance` was expected)";
+        Err(Error::input(message).at(&auto.location))
     } else {
         Ok(out)
     }

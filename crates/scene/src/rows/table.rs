@@ -9,14 +9,24 @@ use crate::checked::Scene;
 use crate::model::steps::Factors;
 use crate::rows::at_node::AtNode;
 use base::Result;
-use fetifeti::substructures::{InterfaceRow, RowKind, RowLabel, RowSource};
+use fetifeti::problem::{RowLabel, RowSource};
+use fetifeti::Row;
+
+/// An inequality, or an equation.
+fn made(inequality: bool, terms: Vec<(u64, f64)>, right_hand_side: f64) -> Row {
+    if inequality {
+        Row::inequality(terms, right_hand_side)
+    } else {
+        Row::equality(terms, right_hand_side)
+    }
+}
 
 impl Scene {
     /// The rows of B_gl at points whose lowest subdomain satisfies `owns`, with the right-hand sides of the last load
     /// step. There are rows u_a − u_b = 0 for every tied pair of bodies a < b, open rows at the candidate contact nodes
     /// of faces that are tied in part, rows u_a − u_b ≤ g in contact (a is the first body of the pair), and rows u ≤ g
     /// and −u ≤ −g beside obstacles. Given values are moved to the right-hand side.
-    pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<InterfaceRow> {
+    pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<Row> {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
         let rounding = Rounding::new(self);
@@ -24,41 +34,31 @@ impl Scene {
             let side = |m: usize| point.members[m].along(&self.bodies, row.direction).terms;
             let [a, b] = row.members.map(|m| m.map(side).unwrap_or_default());
             let minus = b.into_iter().map(|(dof, n)| (dof, -n));
-            InterfaceRow {
-                terms: a.into_iter().chain(minus).collect(),
-                gap: row.right_hand_side(&last),
-                kind: match row.inequality {
-                    Some(_) => RowKind::Inequality,
-                    None => RowKind::Equality,
-                },
-                holds: row.holds,
-                block: point.block,
-                rounding: rounding.of(row.members.iter().flatten().map(|&m| point.members[m].body)),
-                label: self.label(point, row, &mut areas),
-            }
+            let terms: Vec<(u64, f64)> = a.into_iter().chain(minus).collect();
+            let members = row.members.iter().flatten();
+            made(row.inequality.is_some(), terms, row.right_hand_side(&last))
+                .held(row.holds)
+                .in_block(point.block)
+                .with_rounding(rounding.of(members.map(|&m| point.members[m].body)))
+                .with_label(self.label(point, row, &mut areas))
         };
-        let equation = |(k, e): (usize, &Equation)| InterfaceRow {
-            terms: e.terms.clone(),
-            gap: e.value - last.dirichlet() * e.given,
-            kind: RowKind::Equality,
-            holds: true,
-            block: e.block,
-            rounding: rounding.of_equation(e),
-            label: RowLabel::new(RowSource::Equation(k), [None; 2]),
+        let equation = |(k, e): (usize, &Equation)| {
+            Row::equality(e.terms.clone(), e.value - last.dirichlet() * e.given)
+                .in_block(e.block)
+                .with_rounding(rounding.of_equation(e))
+                .with_label(RowLabel::new(RowSource::Equation(k), [None; 2]))
         };
-        let mortar = |m: &MortarRow| InterfaceRow {
-            terms: m.terms.clone(),
-            gap: m.right_hand_side(&last),
-            kind: match m.inequality {
-                Some(_) => RowKind::Inequality,
-                None => RowKind::Equality,
-            },
-            holds: true,
-            block: m.block,
-            rounding: rounding.of(m.members.iter().flatten().map(|member| member.body)),
-            label: self.mortar_label(m),
+        let mortar = |m: &MortarRow| {
+            made(
+                m.inequality.is_some(),
+                m.terms.clone(),
+                m.right_hand_side(&last),
+            )
+            .in_block(m.block)
+            .with_rounding(rounding.of(m.members.iter().flatten().map(|member| member.body)))
+            .with_label(self.mortar_label(m))
         };
-        let mut out: Vec<InterfaceRow> = self.each_row(owns).map(row).collect();
+        let mut out: Vec<Row> = self.each_row(owns).map(row).collect();
         out.extend(self.own_equations(owns).map(equation));
         out.extend(self.own_mortar(owns).map(mortar));
         out
@@ -116,18 +116,14 @@ impl Scene {
     fn mortar_label(&self, row: &MortarRow) -> RowLabel {
         let carrier = row.members[self.carrier(row.source)];
         let carrier = carrier.expect("the node with the multiplier is a member");
-        RowLabel {
-            source: row.source,
-            members: row.members,
-            point: carrier.position(&self.bodies),
-            t: self.t(row.source, row.node),
-            normal: row.direction,
-            area: if row.inequality.is_some() && self.has_pressure() {
-                row.area
-            } else {
-                0.0
-            },
-        }
+        let area = if row.inequality.is_some() && self.has_pressure() {
+            row.area
+        } else {
+            0.0
+        };
+        RowLabel::new(row.source, row.members)
+            .at(carrier.position(&self.bodies), self.t(row.source, row.node))
+            .along(row.direction, area)
     }
 
     /// The number of the member that carries the multiplier of rows from a source: the first, where nodes match.
@@ -152,13 +148,8 @@ impl Scene {
     fn label(&self, point: &Point, row: &PointRow, areas: &mut Areas<'_>) -> RowLabel {
         let members = row.members.map(|m| m.map(|m| point.members[m]));
         let first = members[0].expect("every row has a first member");
-        RowLabel {
-            source: row.source,
-            members,
-            point: first.position(&self.bodies),
-            t: self.t(row.source, row.node),
-            normal: row.direction,
-            area: areas.at(row.source, first),
-        }
+        RowLabel::new(row.source, members)
+            .at(first.position(&self.bodies), self.t(row.source, row.node))
+            .along(row.direction, areas.at(row.source, first))
     }
 }

@@ -5,7 +5,7 @@ use super::equations::Equation;
 use super::mortar_row::MortarRow;
 use super::points::{Point, PointRow};
 use crate::checked::Scene;
-use fetifeti::substructures::BodyNode;
+use fetifeti::problem::BodyNode;
 
 /// A node of a body, with the coefficients of its displacement by component.
 pub type RowTerm = (BodyNode, [f64; 3]);

@@ -14,7 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Layout, Terms};
 use crate::assembled::eliminated::Eliminated;
 use base::Result;
-use fetifeti::substructures::{InterfaceRow, RowSource};
+use fetifeti::problem::RowSource;
+use fetifeti::Row;
 use parallel::exchange::sum_all;
 use petsc::{Session, Vec as PetscVec};
 
@@ -68,7 +69,7 @@ impl Combined {
 
 impl Layout<'_> {
     /// Whether an inequality is no difference of two unknowns along one direction, nor bounds a single one.
-    pub(super) fn is_combined(&self, row: &InterfaceRow) -> bool {
+    pub(super) fn is_combined(&self, row: &Row) -> bool {
         match self.ends(row).0.as_slice() {
             [] | [_] => false,
             [a, b] => (0..3).any(|c| (a.1[c] + b.1[c]).abs() > 1e-10),
@@ -77,7 +78,7 @@ impl Layout<'_> {
     }
 
     /// The node that carries the multiplier of a row, with the vector whose product with u the row takes.
-    pub(super) fn carrier(&self, row: &InterfaceRow) -> Option<(u64, [f64; 3])> {
+    pub(super) fn carrier(&self, row: &Row) -> Option<(u64, [f64; 3])> {
         let own = match row.label.source {
             RowSource::Interface(k) => {
                 let interface = &self.scene.interfaces[k];
@@ -100,7 +101,7 @@ impl Layout<'_> {
     }
 
     /// Changes variables so that these inequalities are bounds; equations are eliminated and nodes turned before.
-    pub(super) fn combine(&mut self, inequalities: &[&InterfaceRow]) {
+    pub(super) fn combine(&mut self, inequalities: &[&Row]) {
         let combined: Vec<bool> = inequalities.iter().map(|r| self.is_combined(r)).collect();
         if !combined.contains(&true) || self.trouble.is_some() {
             return;
@@ -192,7 +193,7 @@ impl Layout<'_> {
     }
 
     /// The sentence on rows that depend on each other.
-    fn dependent(&self, inequalities: &[&InterfaceRow]) -> String {
+    fn dependent(&self, inequalities: &[&Row]) -> String {
         let row = inequalities.iter().find(|r| self.is_combined(r));
         let x = row.map_or([0.0; 3], |r| r.label.point);
         format!(

@@ -20,7 +20,8 @@ use super::eliminated::Eliminated;
 use super::frame::Frame;
 use super::motions::{Echelon, Functional, Motions};
 use base::linalg::vec3::ball;
-use fetifeti::substructures::{InterfaceRow, RowKind};
+use fetifeti::problem::RowKind;
+use fetifeti::Row;
 use scene::{Numbering, Scene};
 use std::ops::Range;
 
@@ -90,7 +91,7 @@ impl<'a> Layout<'a> {
         };
         layout.fill();
         let rows = scene.rows(&|_| true);
-        let inequalities: Vec<&InterfaceRow> = rows
+        let inequalities: Vec<&Row> = rows
             .iter()
             .filter(|r| r.kind == RowKind::Inequality)
             .collect();

@@ -6,7 +6,8 @@ use super::Layout;
 use crate::assembled::eliminated::{Eliminated, Trouble};
 use crate::assembled::frame::{parallel, Frame};
 use base::linalg::vec3::{norm, unit};
-use fetifeti::substructures::{InterfaceRow, RowKind, RowSource};
+use fetifeti::problem::{RowKind, RowSource};
+use fetifeti::Row;
 
 /// The directions along which inequalities bound a node.
 #[derive(Debug, Default)]
@@ -29,7 +30,7 @@ pub(super) type Bounded = BTreeMap<u64, Directions>;
 impl Layout<'_> {
     /// The nodes in inequalities with their directions. Where inequalities have more than two unknowns, these are the
     /// nodes that carry multipliers.
-    pub(super) fn bounded(&self, rows: &[&InterfaceRow]) -> Bounded {
+    pub(super) fn bounded(&self, rows: &[&Row]) -> Bounded {
         let mut directions = Bounded::new();
         let mut add = |block: u64, direction: [f64; 3], firm: bool| {
             let of = directions.entry(block).or_default();
@@ -54,7 +55,7 @@ impl Layout<'_> {
     }
 
     /// Solves the equations beside ties. What inequalities take of a node stays.
-    pub(super) fn eliminate(&mut self, rows: &[InterfaceRow], bounded: &Bounded) {
+    pub(super) fn eliminate(&mut self, rows: &[Row], bounded: &Bounded) {
         let equations = rows
             .iter()
             .filter(|row| row.kind == RowKind::Equality && self.is_chained(row.label.source));
@@ -101,7 +102,7 @@ impl Layout<'_> {
     }
 
     /// Computes the frames of the nodes in inequalities.
-    pub(super) fn turn(&mut self, rows: &[&InterfaceRow], bounded: &Bounded) {
+    pub(super) fn turn(&mut self, rows: &[&Row], bounded: &Bounded) {
         for (&block, Directions { list, firm }) in bounded {
             let c = self.components as u64;
             let free =
@@ -142,7 +143,7 @@ impl Layout<'_> {
 
     /// The nodes of a row, each with the vector whose product with u the row takes. All vectors are divided by the
     /// length of the first, which is returned as well.
-    pub fn ends(&self, row: &InterfaceRow) -> (Vec<(u64, [f64; 3])>, f64) {
+    pub fn ends(&self, row: &Row) -> (Vec<(u64, [f64; 3])>, f64) {
         let mut ends: Vec<(u64, [f64; 3])> = Vec::new();
         let c = self.components as u64;
         for &(dof, coefficient) in &row.terms {
@@ -165,7 +166,7 @@ impl Layout<'_> {
     }
 
     /// As [`Layout::bound`], for inequality number `k` of the scene, which may have more unknowns.
-    pub fn bound_of(&self, k: usize, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
+    pub fn bound_of(&self, k: usize, row: &Row) -> Option<([Option<u64>; 2], f64)> {
         match self.combined.place(k) {
             Some(place) => Some(([Some(place), None], 1.0)),
             None => self.bound(row),
@@ -173,7 +174,7 @@ impl Layout<'_> {
     }
 
     /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it does not have this form.
-    pub fn bound(&self, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
+    pub fn bound(&self, row: &Row) -> Option<([Option<u64>; 2], f64)> {
         let (ends, scale) = self.ends(row);
         let mut out = [None; 2];
         for (block, direction) in ends {

@@ -66,9 +66,10 @@ struct Case {
 /// Runs the benchmark. Under mpirun only rank 0 starts jobs, the others wait. Collective.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) for mistakes that are found before anything runs, and for a scene that ours finds unsolvable;
-/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) at the end where ours did not converge; [`ErrorKind::Environment`](base::ErrorKind::Environment) without mpirun or disk. A
-/// baseline that fails is no error but a row with a message.
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for mistakes that are found before anything runs, and for a scene that
+/// ours finds unsolvable; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged) at the end where ours did not
+/// converge; [`ErrorKind::Environment`](base::ErrorKind::Environment) without mpirun or disk. A baseline that fails is
+/// no error but a row with a message.
 pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     let baselines = session.agree(table::select(&wanted.with))?;
     let mut names = wanted.cases.clone();

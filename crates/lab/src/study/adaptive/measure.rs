@@ -9,10 +9,8 @@ use crate::assembled::reference::{Precision, Reference};
 use crate::assembled::system::Copies;
 use crate::baselines::single;
 use base::{ErrorKind, Result};
-use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::{Subdomain, Substructures};
-use fetifeti::{FetiFeti, Solution};
+use fetifeti::settings::{Adaptive, MethodSettings};
+use fetifeti::{FetiFeti, Problem, Solution, Subdomain};
 use petsc::Session;
 use report::output;
 use scene::{distribution, Numbering, Scene};
@@ -114,7 +112,7 @@ fn mumps<'a>(
 /// Runs without and with deflation in turns, so that other load on the machine affects all of them.
 fn ours(
     session: &Session,
-    problem: &Substructures,
+    problem: &Problem,
     court: &Court,
     effort: Effort,
     record: &mut Record,
@@ -125,7 +123,7 @@ fn ours(
     let mut searches = vec![Vec::new(); ways.len()];
     for round in 0..effort.repeats {
         for (k, &way) in ways.iter().enumerate() {
-            let solved = match solve(session, problem, way) {
+            let mut solved = match solve(session, problem, way) {
                 Ok(solved) => solved,
                 // If one variant fails, its row says why.
                 Err(e) if e.kind() == ErrorKind::Environment => return Err(e),
@@ -140,7 +138,7 @@ fn ours(
             searches[k].extend(solved.solver.deflated().map(|c| c.seconds));
             if round == 0 {
                 match way {
-                    Adaptive::Below(tau) => record.runs.push(deflated(tau, &solved, court)?),
+                    Adaptive::Below(tau) => record.runs.push(deflated(tau, &mut solved, court)?),
                     _ => plain(&solved, court, effort, record)?,
                 }
             }
@@ -157,15 +155,11 @@ fn ours(
     Ok(())
 }
 
-fn solve(session: &Session, problem: &Substructures, adaptive: Adaptive) -> Result<Solved> {
-    let settings = MethodSettings {
-        rtol: RTOL,
-        adaptive,
-        ..MethodSettings::default()
-    };
+fn solve(session: &Session, problem: &Problem, adaptive: Adaptive) -> Result<Solved> {
+    let settings = MethodSettings::default().rtol(RTOL).adaptive(adaptive);
     let problem = problem.clone();
     let clock = Instant::now();
-    let solver = FetiFeti::new(session, problem, settings)?;
+    let mut solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
     let seconds = clock.elapsed().as_secs_f64();
     Ok(Solved {
@@ -190,7 +184,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
-    let small = |s: &fetifeti::Spectrum| s.kappa() < ESTIMATED;
+    let small = |s: &fetifeti::solution::Spectrum| s.kappa() < ESTIMATED;
     let exact = if record.multipliers <= effort.plain && solution.estimate.iter().all(small) {
         // If the eigensolver fails, the solution remains valid.
         solver.plain_spectrum().ok().flatten()
@@ -208,8 +202,8 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     Ok(())
 }
 
-fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<AdaptiveRun> {
-    let (solver, solution) = (&solved.solver, &solved.solution);
+fn deflated(tau: f64, solved: &mut Solved, court: &Court) -> Result<AdaptiveRun> {
+    let (solver, solution) = (&mut solved.solver, &solved.solution);
     let searched = solver.deflated().is_some();
     // As with -fetifeti_spectrum: vectors that the iterations have not called for are searched for as well.
     let spectrum = solver.spectrum().ok().flatten();
@@ -234,7 +228,7 @@ fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<AdaptiveRun> {
 
 /// The smallest error over ever smaller residuals, up to and including the first residual that is not reached: as for
 /// MUMPS, only the solution counts.
-fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Option<f64>> {
+fn attainable(solver: &mut FetiFeti, court: &Court, first: Option<f64>) -> Result<Option<f64>> {
     let mut least = first;
     for rtol in TIGHTER {
         solver.ksp().set_tolerances(Some(rtol), None, None, None)?;

@@ -232,7 +232,7 @@ fn record(
 
 /// The pressures of the rows.
 pub fn pressures(run: &Run, place: impl Fn([f64; 3]) -> f64) -> Vec<Pressure> {
-    let pressure = |row: &fetifeti::substructures::SolvedRow| {
+    let pressure = |row: &fetifeti::solution::SolvedRow| {
         Some(Pressure {
             x: place(row.label.point),
             value: row.pressure()?,

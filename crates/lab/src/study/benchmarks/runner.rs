@@ -5,8 +5,8 @@ use std::path::Path;
 use super::report::{Mesh, Node, Value};
 use crate::study::solved::Solved;
 use base::Result;
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::SolvedRow;
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
 use mesh::{gmsh, MeshFile};
 use petsc::Session;
 use report::json::Kkt;
@@ -82,10 +82,7 @@ impl Runner<'_> {
             let mine = rank == self.session.rank();
             self.session.agree(if mine { write() } else { Ok(()) })?;
         }
-        let settings = MethodSettings {
-            rtol,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().rtol(rtol);
         let solved = Solved::new(self.session, &path.display().to_string(), text, &settings)?;
         let rows = solved.rows(self.session);
         Ok(Run { file, solved, rows })

@@ -3,7 +3,7 @@
 use super::report::{Series, Value};
 use super::runner::{Run, Runner};
 use base::Result;
-use fetifeti::substructures::RowSource;
+use fetifeti::problem::RowSource;
 
 /// The largest permitted error of a force, relative to the whole weight.
 const LIMIT: f64 = 1e-8;

@@ -19,8 +19,9 @@ use crate::assembled::layout::Layout;
 use crate::assembled::reference::Reference;
 use crate::assembled::system::Copies;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::SolvedRow;
+use fetifeti::settings::MethodSettings;
+use fetifeti::solution::SolvedRow;
+use fetifeti::FetiFeti;
 use parallel::exchange::highest;
 use petsc::Session;
 use report::json;
@@ -169,11 +170,8 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         subdomains: scene.n_subdomains(),
         ..Record::default()
     };
-    let settings = MethodSettings {
-        rtol: RTOL,
-        ..MethodSettings::default()
-    };
-    let solved = match Solved::new(session, &file, &case.text, &settings) {
+    let settings = MethodSettings::default().rtol(RTOL);
+    let mut solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
         // The scene has been read: a refusal from here on says that it has no solution.
         Err(e) if refused_or_failed(&e) => {
@@ -188,7 +186,7 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         }
         Err(e) => return Err(e),
     };
-    fill(session, &solved, spectrum, &mut record)?;
+    fill(session, &mut solved, spectrum, &mut record)?;
     if let Some(known) = &case.force {
         let along = |r: &SolvedRow| r.multiplier * r.normal()[known.axis];
         let found = solved.rows(session).iter().map(along).sum();
@@ -202,18 +200,23 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
     Ok(record)
 }
 
+fn multipliers(solver: &FetiFeti) -> usize {
+    let facts = solver.facts();
+    facts.multipliers_local + facts.multipliers_global
+}
+
 /// Fills the record with the method's own report.
-fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -> Result<()> {
+fn fill(session: &Session, solved: &mut Solved, exact: usize, record: &mut Record) -> Result<()> {
+    if multipliers(&solved.solver) <= exact {
+        // If the eigensolver fails, the solution remains valid.
+        record.condition.exact = solved.solver.spectrum().ok().flatten().map(Into::into);
+    }
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
-    record.multipliers = facts.multipliers_local + facts.multipliers_global;
+    record.multipliers = multipliers(solver);
     record.outer_iterations = solution.steps.len();
     record.iterations = solution.iterations;
     record.seconds = solved.seconds;
-    if record.multipliers <= exact {
-        // If the eigensolver fails, the solution remains valid.
-        record.condition.exact = solver.spectrum().ok().flatten().map(Into::into);
-    }
     record.condition.estimate = solution.estimate.map(Into::into);
     record.kkt = Some(json::Kkt::new(&solution.kkt, facts.inequalities > 0));
     let rows = solved.rows(session);

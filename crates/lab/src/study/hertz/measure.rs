@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use super::theory::{Contact, Pair};
 use base::linalg::vec3::dot;
-use fetifeti::substructures::{BodyNode, SolvedRow};
+use fetifeti::problem::BodyNode;
+use fetifeti::solution::SolvedRow;
 use scene::Scene;
 
 /// The pressure at a node that may touch.

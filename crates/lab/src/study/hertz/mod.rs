@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use super::solved::Solved;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use petsc::Session;
 use report::json::Kkt;
 
@@ -155,10 +155,7 @@ pub fn run(
 /// # Errors
 /// As [`run`].
 pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
-    let settings = MethodSettings {
-        rtol: 1e-8,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().rtol(1e-8);
     let name = format!("hertz_{}_{n}.toml", case.name());
     let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
     let rows = solved.rows(session);

@@ -9,7 +9,7 @@ use super::{IterationSeconds, Point, SetupSeconds, Work};
 use crate::baselines::launch;
 use crate::study::scaling::network;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::MethodSettings;
 use fetifeti::FetiFeti;
 use parallel::clock::{self, Phase};
 use parallel::contiguous_share;
@@ -44,7 +44,8 @@ pub struct NetworkRecord {
 /// Runs the task that `file` describes. Collective.
 ///
 /// # Errors
-/// [`ErrorKind::Input`](base::ErrorKind::Input) for a file that the study has not written; those of the method; [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged).
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for a file that the study has not written; those of the method;
+/// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged).
 pub fn run_task(session: &Session, file: &Path) -> Result<()> {
     let task: Task = launch::task(session, file, "a task that study scaling has written")?;
     match &task {
@@ -98,10 +99,10 @@ impl Point {
 
 /// One set-up and solve. The seconds of a phase are those of the slowest rank; those of messages are of the rank that
 /// waits least. Collective.
-fn once(session: &Session, problem: fetifeti::Substructures) -> Result<Point> {
+fn once(session: &Session, problem: fetifeti::Problem) -> Result<Point> {
     let comm = session.comm();
     let (subdomains, start) = (problem.n_subdomains, clock::spent());
-    let (solver, setup_total) = timed(session, || {
+    let (mut solver, setup_total) = timed(session, || {
         FetiFeti::new(session, problem, MethodSettings::default())
     })?;
     let spent = clock::spent().since(&start);

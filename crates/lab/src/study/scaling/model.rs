@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::fit::Law;
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
-use fetifeti::feti::projector::gram::FEW;
+use fetifeti::inside::FEW;
 
 /// Projections in an iteration: P and Pᵀ around F and around M⁻¹, each with an all-reduce of r numbers; or of many
 /// motions Pᵀ after F and P after M⁻¹, each with messages up and down the tree.

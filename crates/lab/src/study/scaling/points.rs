@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::model::Modelled;
 use super::quantities::{IterationSeconds, SetupSeconds, Work};
-use fetifeti::feti::Communication;
+use fetifeti::solution::Communication;
 
 /// The series that a run belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

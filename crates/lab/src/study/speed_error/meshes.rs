@@ -3,8 +3,8 @@
 use super::{MeshError, SpeedErrorCase};
 use crate::study::solved::Solved;
 use base::{Error, Result};
-use fetifeti::feti::MethodSettings;
-use fetifeti::substructures::Subdomain;
+use fetifeti::settings::MethodSettings;
+use fetifeti::Subdomain;
 use mesh::BoxMesh;
 use petsc::Session;
 use scene::Body;
@@ -51,10 +51,7 @@ pub fn errors(session: &Session, case: SpeedErrorCase, meshes: &[usize]) -> Resu
 
 impl Tight {
     fn new(session: &Session, case: SpeedErrorCase, n: usize) -> Result<Tight> {
-        let settings = MethodSettings {
-            rtol: 1e-10,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().rtol(1e-10);
         let name = format!("{}_{n}.toml", case.name());
         let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
         if !solved.solution.converged() {

@@ -11,8 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::solved::Solved;
 use base::Result;
-use fetifeti::contact::ContactType;
-use fetifeti::feti::MethodSettings;
+use fetifeti::settings::{ContactType, MethodSettings};
 use petsc::Session;
 use report::output::write_text;
 use report::tables::table::{fixed, Table};
@@ -121,7 +120,7 @@ fn walls(session: &Session, family: &Family, jump: f64, count: usize) -> Result<
                 out.seconds += solved.seconds;
                 let (steps, status) = (&solved.solution.steps, &solved.solution.status);
                 let damped =
-                    |s: &&fetifeti::contact::Step| s.method == ContactType::AugmentedLagrangian;
+                    |s: &&fetifeti::solution::Step| s.method == ContactType::AugmentedLagrangian;
                 Wall {
                     seed,
                     steps: steps.len(),

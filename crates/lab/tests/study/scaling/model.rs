@@ -7,7 +7,7 @@ use cholesky::deal::deal;
 use cholesky::dissection::nested_dissection;
 use cholesky::symbolic::Front;
 use cholesky::symbolic::Symbolic;
-use fetifeti::feti::{Communication, PerIteration};
+use fetifeti::solution::{Communication, PerIteration};
 
 /// Seconds per term of an iteration on the subdomains, as chosen for the tests.
 const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];

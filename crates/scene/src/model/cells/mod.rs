@@ -97,8 +97,8 @@ impl Cells {
     /// where it is white, and in between as `tone` says. In space the picture is the same in all layers.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file is no PNG picture, has colours or transparent pixels, or for values that the tone
-    /// does not fit.
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file is no PNG picture, has colours or transparent pixels,
+    /// or for values that the tone does not fit.
     pub fn picture(path: &Path, values: [f64; 2], tone: Tone) -> Result<Cells> {
         let (picture, counts) = Picture::read(path, values, tone)?;
         let range = range(picture.values());
