@@ -214,7 +214,7 @@ impl FetiFeti {
 
     /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies
     /// if there are some. Patterns are not analysed again if
-    /// [`MethodSettings::keeps_analyses`](crate::MethodSettings::keeps_analyses) was set. `None` if a subdomain has
+    /// [`MethodSettings::keeps_analyses`](crate::settings::MethodSettings::keeps_analyses) was set. `None` if a subdomain has
     /// motions without energy that it did not have: a new solver is to be made, with primal dofs for them. Collective.
     ///
     /// # Errors

@@ -5,6 +5,12 @@ use petsc::Options;
 
 /// Refuses the options that chose other ways until 0.2: none was ever faster.
 pub fn refuse_removed(o: &Options) -> Result<()> {
+    if o.has("gtg_redundancy")? {
+        return Err(Error::input(format!(
+            "option {} is not there any more: ranks share one factor of GᵀQG, and copies of it were never faster",
+            o.full_name("gtg_redundancy")
+        )));
+    }
     for (name, there) in [
         ("local_solver", "multifrontal"),
         ("local_ordering", "nd"),

@@ -236,9 +236,6 @@ pub struct MethodSettings {
     pub primal: Primal,
     /// `fetifeti_projector`.
     pub projector: ProjectorKind,
-    /// `fetifeti_gtg_redundancy`: number of copies of the factor of Gᵀ Q G where rigid motions are many; a copy is
-    /// shared by as many ranks as there are for it.
-    pub gtg_redundancy: usize,
     /// `fetifeti_adaptive`.
     pub adaptive: Adaptive,
     /// `fetifeti_adaptive_max`: largest number of vectors per body.
@@ -279,7 +276,6 @@ impl Default for MethodSettings {
             operators: Operators::Auto,
             memory: None,
             projector: ProjectorKind::Auto,
-            gtg_redundancy: 1,
             adaptive: Adaptive::Auto,
             adaptive_max: 100,
             recycle: 0,
@@ -324,8 +320,6 @@ impl MethodSettings {
         self.memory = o.count("memory", self.memory, help)?;
         let help = "weight Q of the projector";
         self.projector = o.named("projector", self.projector, help)?;
-        let help = "copies of the factor of many rigid motions; the ranks share each";
-        self.gtg_redundancy = o.usize("gtg_redundancy", self.gtg_redundancy, help)?;
         let help = "primal constraints inside the bodies (some of vertices, edges, faces)";
         let text = o.string("primal", &self.primal.name(), help)?;
         self.primal = Primal::parse(&text).ok_or_else(|| {

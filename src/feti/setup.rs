@@ -164,7 +164,7 @@ impl Made {
         let preconditioner =
             Preconditioner::new(comm, kind, problem, &stiffness, lifting, settings.precision); /* M⁻¹ */
         let natural = clock::timed(Phase::NaturalSetup, || {
-            let projector = (settings.projector, varies, settings.gtg_redundancy);
+            let projector = (settings.projector, varies);
             let prefix = format!("{}gtg_", settings.prefix);
             NaturalCoarse::new(problem, &stiffness, &preconditioner, projector, &prefix)
         })?; /*                                                                 G, P                   */

@@ -117,7 +117,7 @@ pub struct Problem {
     pub n_subdomains: usize,
     /// Whether a body in space is a mesh of cells without a regular structure, the same on all ranks. The subdomains
     /// that share a node then differ in how many cells they have there, and so in how much they resist; the method
-    /// chooses its weights accordingly ([`MethodSettings::scaling`](crate::MethodSettings::scaling)).
+    /// chooses its weights accordingly ([`MethodSettings::scaling`](crate::settings::MethodSettings::scaling)).
     pub ragged: bool,
     /// Name of every body, for messages; length n_bodies.
     pub body_names: Vec<String>,

@@ -84,42 +84,6 @@ fn agree_with_jumps(session: &Session, weights: &[ProjectorKind]) -> Result<()> 
     Ok(())
 }
 
-/// The wall: whatever number of ranks shares the factor, the energy is the same to 1e-10. A number that does not divide
-/// the ranks is refused.
-fn copies_do_not_matter(session: &Session) -> Result<()> {
-    let [_, (name, text)] = scenes();
-    let scene = Scene::parse(name, &text)?;
-    let share = fetifeti::share(session, scene.n_subdomains());
-    let solve = |copies: usize| {
-        let mut settings = Settings::default();
-        settings.method.gtg_redundancy = copies;
-        settings.method.rtol = 1e-10;
-        let rows = scene.substructures(&|s| share.contains(&s))?;
-        FetiFeti::new(session, rows, settings)?.solve()
-    };
-    let size = session.size();
-    let mut energies = Vec::new();
-    for copies in (1..=size + 1).filter(|c| size % c == 0) {
-        let solution = solve(copies)?;
-        if !solution.converged() {
-            return Err(Error::input(format!(
-                "{copies} copies: {}",
-                solution.status
-            )));
-        }
-        energies.push(solution.energy);
-    }
-    let away = energies.iter().map(|e| (e - energies[0]).abs());
-    let away = away.fold(0.0, f64::max) / energies[0].abs();
-    let refused = solve(size + 1).map(drop).unwrap_err().to_string();
-    let why = format!("expected a number that divides {size}");
-    if away < 1e-10 && refused.contains(&why) {
-        Ok(())
-    } else {
-        Err(Error::input(format!("{energies:?}, {refused}")))
-    }
-}
-
 /// The blocks that are pushed to all sides, with coefficients from 1 to 10⁵ from element to element: `auto` leaves
 /// eigenvalues that it would deflate in fewer bodies, and says so; with deflation the energy is the same to 1e-8.
 fn deflation_is_declined(session: &Session) -> Result<()> {
@@ -214,7 +178,6 @@ fn many_motions_on_two_and_four_ranks() {
         let turn = |ranks: usize| session.size() == ranks || all_cases();
         if turn(4) {
             agree(session, &KINDS[..1])?;
-            copies_do_not_matter(session)?;
         }
         if turn(2) {
             agree_with_jumps(session, &WEIGHTS[2..])?;

@@ -262,8 +262,7 @@ int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double 
 
 /* ---- graphs and MATIS ---- */
 
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,
-                 int *part, int *done)
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int *part)
 {
   MatPartitioning partitioning;
   Mat             graph;
@@ -271,10 +270,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   const PetscInt *found;
   PetscInt       *i, *j, *w, k;
 
-  *done = 0;
-#if !defined(PETSC_HAVE_PTSCOTCH)
-  if (!chosen) return 0;
-#endif
   /* The matrix frees these. */
   PetscCall(PetscMalloc1(n + 1, &i));
   PetscCall(PetscMalloc1(row[n], &j));
@@ -287,7 +282,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
   PetscCall(MatPartitioningSetNParts(partitioning, parts));
   PetscCall(MatPartitioningSetUseEdgeWeights(partitioning, PETSC_TRUE));
-  if (!chosen) PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
   PetscCall(MatPartitioningSetFromOptions(partitioning));
   PetscCall(MatPartitioningApply(partitioning, &is));
   PetscCall(ISGetIndices(is, &found));
@@ -296,7 +290,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   PetscCall(ISDestroy(&is));
   PetscCall(MatPartitioningDestroy(&partitioning));
   PetscCall(MatDestroy(&graph));
-  *done = 1;
   return 0;
 }
 
@@ -368,16 +361,15 @@ int ff_viewer_is_ascii(PetscViewer viewer, int *ascii)
   return 0;
 }
 
-int ff_options_any(const char *start, const char *but, PetscBool *found)
+int ff_options_any(const char *start, PetscBool *found)
 {
   char  *text   = NULL;
-  size_t length = strlen(start), other = strlen(but);
+  size_t length = strlen(start);
 
   *found = PETSC_FALSE;
   PetscCall(PetscOptionsGetAll(NULL, &text));
   for (const char *at = text; at && *at; ++at) {
     if ((at != text && at[-1] != ' ') || strncmp(at, start, length)) continue;
-    if (other && !strncmp(at, but, other) && (!at[other] || at[other] == ' ')) continue;
     *found = PETSC_TRUE;
   }
   return (int)PetscFree(text);

@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use mpi::topology::{Color, SimpleCommunicator};
+use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::deal::{deal, Share};
@@ -57,22 +57,15 @@ pub struct Place {
 }
 
 impl Team {
-    /// Divides the ranks of `comm` into `copies` teams of the same size, which have the same factor, and deals out the
-    /// fronts of `symbolic`. `home` has, for each dof, the rank that would have it rather than others; it is empty if
-    /// that does not matter. Collective.
-    ///
-    /// # Panics
-    /// If `copies` does not divide the number of ranks.
-    pub fn new(comm: &SimpleCommunicator, symbolic: Symbolic, copies: usize, home: &[u32]) -> Team {
-        let size = comm.size() as usize;
-        assert_eq!(size % copies, 0, "teams of the same size");
-        let team = comm.rank() / (size / copies) as i32;
-        let comm = comm.split_by_color(Color::with_value(team));
-        let comm = comm.expect("every rank has a colour");
+    /// Deals out the fronts of `symbolic` to the ranks of `comm`. `home` has, for each dof, the rank that would have it
+    /// rather than others; it is empty if that does not matter. Collective.
+    pub fn new(comm: &SimpleCommunicator, symbolic: Symbolic, home: &[u32]) -> Team {
+        let comm = comm.duplicate();
         let rank = comm.rank() as u32;
-        let homes: Vec<u32> = match copies {
-            1 if !home.is_empty() => symbolic.dofs().map(|dof| home[dof as usize]).collect(),
-            _ => Vec::new(),
+        let homes: Vec<u32> = if home.is_empty() {
+            Vec::new()
+        } else {
+            symbolic.dofs().map(|dof| home[dof as usize]).collect()
         };
         let shares = deal(&symbolic.fronts, comm.size() as usize, &homes);
         let mine = |above: bool| {
@@ -101,9 +94,9 @@ impl Team {
         }
     }
 
-    /// Whether it has all ranks of `comm`, and more than one.
-    pub fn is_whole(&self, comm: &SimpleCommunicator) -> bool {
-        self.comm.size() > 1 && self.comm.size() == comm.size()
+    /// Whether it has more than one rank.
+    pub fn is_shared(&self) -> bool {
+        self.comm.size() > 1
     }
 
     /// Number of dofs that have a number here.

@@ -308,19 +308,9 @@ impl Options {
 
     /// Whether the user has set any option with this prefix.
     pub fn any(&self) -> Result<bool> {
-        self.any_but("")
-    }
-
-    /// Whether the user has set any option with this prefix other than the option `name`.
-    pub fn any_but(&self, name: &str) -> Result<bool> {
         let start = c_string(&format!("-{}", self.prefix));
-        let but = match name {
-            "" => String::new(),
-            name => format!("-{}{name}", self.prefix),
-        };
-        let but = c_string(&but);
         let mut found = Flag::of(false);
-        petsc!(ff_options_any(start.as_ptr(), but.as_ptr(), &mut found))?;
+        petsc!(ff_options_any(start.as_ptr(), &mut found))?;
         Ok(found.get())
     }
 

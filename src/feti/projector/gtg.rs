@@ -90,9 +90,7 @@ impl Gtg {
         let comm = session.comm();
         let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
         let solver = match q {
-            _ if Options::new(session, prefix).any_but("redundancy")? => {
-                Solver::Chosen(chosen(&gram)?.into())
-            }
+            _ if Options::new(session, prefix).any()? => Solver::Chosen(chosen(&gram)?.into()),
             ProjectorKind::Identity if gram.is_sparse() => Solver::Own,
             _ if gram.is_sparse() => {
                 let both = shape.product_and_transpose(comm, g, qg);

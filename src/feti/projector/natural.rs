@@ -11,7 +11,6 @@ use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use super::blocks::{positions, Blocks};
 use super::columns::KernelColumns;
@@ -31,7 +30,7 @@ use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
 use crate::substructures::{Problem, Subdomain};
-use crate::{Error, Result};
+use crate::Result;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
 use parallel::exchange::any;
@@ -70,8 +69,6 @@ pub struct NaturalCoarse {
     graph: OnceCell<BodyGraph>,
     /// The largest ratio of the stiffnesses of bodies.
     pub(super) spread: f64,
-    /// Number of copies of a factor of many rigid motions among the ranks.
-    copies: usize,
     /// The way of distributed vectors to the shared factor of GᵀQG.
     way: RefCell<Option<Rc<Spread>>>,
     /// The last choice of rows that was asked for, and their GᵀG.
@@ -92,25 +89,16 @@ pub struct NaturalCoarse {
 }
 
 impl NaturalCoarse {
-    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body,
-    /// `copies` the number of factors of many rigid motions. Collective.
-    ///
-    /// # Errors
-    /// `copies` does not divide the number of ranks.
+    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body.
+    /// Collective.
     pub fn new(
         problem: &Problem,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
-        (wanted, varies, copies): (ProjectorKind, f64, usize),
+        (wanted, varies): (ProjectorKind, f64),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
         let comm = stiffness.comm();
-        if copies == 0 || comm.size() as usize % copies != 0 {
-            return Err(Error::input(format!(
-                "option -{prefix}redundancy is {copies}, expected a number that divides {}, the number of ranks",
-                comm.size()
-            )));
-        }
         let space = &stiffness.space;
         let columns = KernelColumns::new(comm, problem.n_bodies, &space.owned);
         let r = columns.n();
@@ -129,7 +117,6 @@ impl NaturalCoarse {
             wide: OnceCell::new(),
             graph: OnceCell::new(),
             spread: 1.0,
-            copies,
             way: RefCell::new(None),
             last: RefCell::new(None),
             numbers: RefCell::default(),
@@ -151,7 +138,7 @@ impl NaturalCoarse {
             if auto && natural.mended {
                 natural.projector = ProjectorKind::Diagonal;
                 // Ranks that share a factor need not know all columns for that.
-                if natural.team_of_all(comm) {
+                if natural.team_of_all() {
                     natural.arrange(problem, stiffness)?;
                 }
                 natural.renew(problem, stiffness, preconditioner)?;
@@ -161,9 +148,9 @@ impl NaturalCoarse {
     }
 
     /// Whether all ranks share one factor of many columns.
-    fn team_of_all(&self, comm: &SimpleCommunicator) -> bool {
+    fn team_of_all(&self) -> bool {
         let team = self.shape.as_ref().and_then(Shape::team);
-        team.is_some_and(|team| team.is_whole(comm))
+        team.is_some_and(|team| team.is_shared())
     }
 
     /// Finds the sparsity of GᵀG, the order in which it is factored, and the columns that this rank has to know for the
@@ -178,7 +165,7 @@ impl NaturalCoarse {
             (blocks, positions(comm, problem))
         };
         // With Q = M⁻¹ rows reach far, and the solver of the user's choice has its own columns on each rank.
-        let chosen = Options::new(&stiffness.session, &self.prefix).any_but("redundancy")?;
+        let chosen = Options::new(&stiffness.session, &self.prefix).any()?;
         let all = chosen || self.projector == ProjectorKind::Preconditioner;
         let names = |body: usize| {
             let columns = self.columns.of(body);
@@ -305,7 +292,7 @@ impl NaturalCoarse {
     /// The way to the factor of this shape for the rows of G and Q G: the one that is known if it suffices.
     /// Collective.
     fn spread_for(&self, session: &Session, shape: &Shape) -> Result<Option<Rc<Spread>>> {
-        let Some(team) = shape.team().filter(|team| team.is_whole(session.comm())) else {
+        let Some(team) = shape.team().filter(|team| team.is_shared()) else {
             return Ok(None);
         };
         // With other Q the columns are always those of all candidate rows.
@@ -327,7 +314,6 @@ impl NaturalCoarse {
     /// How ranks share the factors.
     fn sharing(&self) -> Sharing<'_> {
         Sharing {
-            copies: self.copies,
             home: self.columns.home(),
             rows: Some(&self.all),
             known: None,

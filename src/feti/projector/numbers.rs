@@ -57,7 +57,7 @@ impl Numbers {
         }
         let touched = distinct(touched);
         self.chosen.copy_from_slice(chosen);
-        let team = team.filter(|team| team.is_whole(comm));
+        let team = team.filter(|team| team.is_shared());
         let before = team.map(|team| self.of_others(pattern, team, &touched));
         for span in pattern.blocks_between(&touched).map(|b| b.1) {
             self.share[span].fill(0.0);

@@ -64,9 +64,9 @@ impl<'a> Outgoing<'a> {
 
 impl Shape {
     /// The ranks that share factors, if all of them share one: a rank then has some rows of the matrix.
-    fn shared(&self, comm: &SimpleCommunicator) -> Option<&Team> {
+    fn shared(&self) -> Option<&Team> {
         let team = self.team().map(|team| &**team);
-        team.filter(|team| team.is_whole(comm))
+        team.filter(|team| team.is_shared())
     }
 
     /// AᵀB over the rows that `chosen` selects: the rows of the matrix that this rank has. Others are not to be read.
@@ -79,7 +79,7 @@ impl Shape {
         chosen: impl Fn(usize) -> bool,
     ) -> Csr {
         let mut product = self.pattern.product_here(a, b, chosen);
-        let Some(team) = self.shared(comm) else {
+        let Some(team) = self.shared() else {
             sum_all(comm, &mut product.val);
             return product;
         };
@@ -97,7 +97,7 @@ impl Shape {
 
     /// AᵀB, which rounding makes unsymmetric, and its transpose, likewise. Collective.
     pub fn product_and_transpose(&self, comm: &SimpleCommunicator, a: &Rows, b: &Rows) -> [Csr; 2] {
-        let Some(team) = self.shared(comm) else {
+        let Some(team) = self.shared() else {
             let product = self.product(comm, a, b, |_| true);
             let transpose = transposed(&product);
             return [product, transpose];
@@ -129,7 +129,7 @@ impl Shape {
 
     /// All rows of a matrix of which this rank has some, with the names of columns. Collective.
     pub fn gathered(&self, comm: &SimpleCommunicator, a: Csr) -> Csr {
-        let Some(team) = self.shared(comm) else {
+        let Some(team) = self.shared() else {
             return a;
         };
         let mut words: Vec<u64> = Vec::new();

@@ -30,8 +30,6 @@ pub struct Shape {
 
 /// How ranks share the factors of a shape.
 pub struct Sharing<'a> {
-    /// Number of copies of a factor.
-    pub copies: usize,
     /// The rank of each body; empty if that does not matter.
     pub home: &'a [u32],
     /// Rows from which this rank's contributions to products come; `None`: they come from anywhere.
@@ -44,7 +42,6 @@ impl Sharing<'_> {
     /// One factor, to which every rank may add anything.
     pub fn any() -> Sharing<'static> {
         Sharing {
-            copies: 1,
             home: &[],
             rows: None,
             known: None,
@@ -81,7 +78,7 @@ impl Shape {
             team(comm, lists, (&blocks, at), sharing)
         };
         let team: Option<Team> = (r > FEW).then(|| clock::timed(Phase::NaturalOrder, team));
-        let whole = team.as_ref().filter(|team| team.is_whole(comm));
+        let whole = team.as_ref().filter(|team| team.is_shared());
         let (Some(whole), Some(rows)) = (whole, sharing.rows) else {
             return Shape {
                 pattern: Pattern::new(lists, start, |_| true),
@@ -218,7 +215,7 @@ fn team(
             home.resize(blocks.columns(b).end, sharing.home[body(&b)]);
         }
     }
-    Team::new(comm, symbolic, sharing.copies, &home)
+    Team::new(comm, symbolic, &home)
 }
 
 /// A graph, without numbers.

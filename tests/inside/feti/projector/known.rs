@@ -84,7 +84,6 @@ fn found(
     let ranks = comm.size() as u32;
     let home: Vec<u32> = (0..BODIES).map(|b| b * ranks / BODIES).collect();
     let sharing = Sharing {
-        copies: 1,
         home: &home,
         rows: Some(&named),
         known,
