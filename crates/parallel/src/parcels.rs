@@ -7,7 +7,7 @@ use mpi::traits::Communicator;
 use super::exchange::{gather_words, Message};
 
 /// Records and the list of values of each, in the order in which they were added. Ranks send them to each other by
-/// [`exchange_by_rank`](super::exchange::exchange_by_rank).
+/// [`exchange_by_rank`](super::exchange::exchange_by_rank). Lists that need no record have `()`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parcels<H, V> {
     heads: Vec<H>,
@@ -79,7 +79,9 @@ impl<H: Pod, V: Pod> Message for Parcels<H, V> {
         if !self.is_empty() {
             words.extend_from_slice(cast_slice(&[self.len()]));
             words.extend_from_slice(cast_slice(&self.ends));
-            words.extend_from_slice(cast_slice(&self.heads));
+            if size_of::<H>() > 0 {
+                words.extend_from_slice(cast_slice(&self.heads));
+            }
             words.extend_from_slice(cast_slice(&self.values));
         }
     }
@@ -102,7 +104,10 @@ impl<H: Pod, V: Pod> Message for Parcels<H, V> {
 fn take<T: Pod>(words: &mut &[u32], n: usize) -> Vec<T> {
     let (taken, rest) = words.split_at(n * size_of::<T>() / size_of::<u32>());
     *words = rest;
-    pod_collect_to_vec(taken)
+    match size_of::<T>() {
+        0 => vec![T::zeroed(); n],
+        _ => pod_collect_to_vec(taken),
+    }
 }
 
 #[cfg(test)]
