@@ -12,9 +12,9 @@ use super::model::steps::Factors;
 use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use base::linalg::vec3::{cross, dot, minus, norm};
+use bytemuck::{Pod, Zeroable};
 use elements::mortar::across;
 use fetifeti::substructures::{BodyNode, RowSource, SolvedRow};
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::exchange;
 use petsc::Session;
 

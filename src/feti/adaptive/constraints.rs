@@ -70,10 +70,7 @@ pub fn find(
     let rank_of = |s: u32| sharing.locations.rank(s);
     let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
     let of = |j: usize, class: &Class| ClassSharer::new(class, problem.local[j].index as u32);
-    let (mut numbers, mut names) = (
-        Parcels::for_each_rank(comm),
-        Parcels::for_each_rank(comm),
-    );
+    let (mut numbers, mut names) = (Parcels::for_each_rank(comm), Parcels::for_each_rank(comm));
     for (j, list) in classes.iter().enumerate() {
         for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
             let (to, part) = (rank_of(class.sharers[0]), part(j, class));

@@ -121,7 +121,9 @@ pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<us
             is_cut: is_cut.into(),
         }
     };
-    let answers = received.iter().map(|parts| parts.iter().map(home).collect());
+    let answers = received
+        .iter()
+        .map(|parts| parts.iter().map(home).collect());
     let home = |h: BodyHome| Home {
         rank: h.rank,
         is_cut: h.is_cut != 0,

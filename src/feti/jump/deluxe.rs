@@ -12,7 +12,6 @@
 use std::collections::{BTreeMap, HashMap};
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use super::columns::JumpEntry;
 use super::operator::Jump;
@@ -21,7 +20,18 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::Substructures;
 use base::linalg::dense::{self, Dense, Scratch};
-use parallel::exchange::exchange_words;
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
+
+/// A group, and two subdomains that share it: where S comes from and where it goes.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct GroupSharers {
+    group: u64,
+    to: u32,
+    from: u32,
+}
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
@@ -40,40 +50,33 @@ pub fn apply(
             classes::of(&problem.local[j], sharing, &locals[j], |i| !between[i])
         })
         .collect();
-    // [to, from, group, m², entries] to every sharer
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    // The entries of S go to every sharer.
+    let mut outgoing = Parcels::for_each_rank(comm);
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
             let s = locals[j].s_on(&group.at);
             for &to in &group.sharers {
-                let list = &mut outgoing[sharing.locations.rank(to)];
-                list.extend([
-                    u64::from(to),
-                    sub.index as u64,
-                    group.name(),
-                    s.data.len() as u64,
-                ]);
-                list.extend(s.data.iter().map(|v| v.to_bits()));
+                let of = GroupSharers {
+                    group: group.name(),
+                    to,
+                    from: sub.index as u32,
+                };
+                outgoing[sharing.locations.rank(to)].push(of, s.data.iter().copied());
             }
         }
     }
-    let mut received: HashMap<(u64, u64), BTreeMap<u64, Vec<f64>>> = HashMap::new();
-    for words in exchange_words(comm, outgoing) {
-        let mut rest = &words[..];
-        while let [to, from, name, n, tail @ ..] = rest {
-            let (data, tail) = tail.split_at(*n as usize);
-            let data = data.iter().map(|&w| f64::from_bits(w)).collect();
-            received
-                .entry((*to, *name))
-                .or_default()
-                .insert(*from, data);
-            rest = tail;
-        }
+    let mut received: HashMap<(u32, u64), BTreeMap<u32, Vec<f64>>> = HashMap::new();
+    for (of, data) in exchange_by_rank(comm, outgoing)
+        .iter()
+        .flat_map(Parcels::iter)
+    {
+        let of_group = received.entry((of.to, of.group)).or_default();
+        of_group.insert(of.from, data.to_vec());
     }
     let mut more = vec![Vec::new(); locals.len()];
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
-            let schur = &received[&(sub.index as u64, group.name())];
+            let schur = &received[&(sub.index as u32, group.name())];
             // All sharers add the same numbers in the same order, so that their results are identical.
             if let Some(weights) = group.weights(schur.values()) {
                 let own = group.sharers.binary_search(&(sub.index as u32));

@@ -19,11 +19,7 @@ pub fn check(
     locals: &[Scaled],
 ) -> Result<()> {
     let comm = session.comm();
-    let slack: Vec<usize> = space
-        .matrix
-        .slack()
-        .map(|i| space.first + i)
-        .collect();
+    let slack: Vec<usize> = space.matrix.slack().map(|i| space.first + i).collect();
     if !any(comm, !slack.is_empty()) {
         return Ok(());
     }

@@ -205,7 +205,10 @@ impl PrimalSpace {
             }
         }
         let mut factors_of: FxHashMap<usize, Vec<Dense>> = FxHashMap::default();
-        for (body, entries) in exchange_by_rank(comm, factors).iter().flat_map(Parcels::iter) {
+        for (body, entries) in exchange_by_rank(comm, factors)
+            .iter()
+            .flat_map(Parcels::iter)
+        {
             let of_body = factors_of.entry(body).or_default();
             of_body.push(kernel::received_factors(entries));
         }
@@ -294,7 +297,10 @@ impl PrimalSpace {
             }
         }
         self.z_at_ghosts = vec![Vec::new(); self.ghosts.len()];
-        for (number, row) in exchange_by_rank(comm, outgoing).iter().flat_map(Parcels::iter) {
+        for (number, row) in exchange_by_rank(comm, outgoing)
+            .iter()
+            .flat_map(Parcels::iter)
+        {
             let at = self.ghosts.binary_search(&number);
             let at = at.expect("answers are to our own requests");
             self.z_at_ghosts[at] = row.to_vec();
