@@ -13,6 +13,7 @@ use crate::feti::Numbers;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 use crate::{Error, FetiFeti, Result};
 use base::linalg::csr::Csr;
+use bytemuck::{Pod, Zeroable};
 use parallel::exchange::any;
 use petsc::Mat;
 
@@ -35,6 +36,14 @@ struct Start {
     rows: Vec<(f64, bool)>,
     /// Multipliers and states of the rows that this rank gave.
     given: GivenResults,
+}
+
+/// Multiplier and state of a row on their way to the rank that takes it.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct RowStart {
+    multiplier: f64,
+    holds: u64,
 }
 
 /// The subject of a row of the host: the node of its first term, its kind, and its number among the rows with these.
@@ -190,10 +199,12 @@ impl Embedded {
         let now = subjects(given, self.frame.block_size).into_iter();
         let now = now.map(|s| known.get(&s).copied().unwrap_or((0.0, true)));
         let now: Vec<(f64, bool)> = now.collect();
-        let words = now.iter().map(|(m, h)| [m.to_bits(), u64::from(*h)]);
-        let words: Vec<[u64; 2]> = words.collect();
-        let taken = contact.forth(&self.session, &words);
-        rows.extend(taken.iter().map(|w| (f64::from_bits(w[0]), w[1] == 1)));
+        let mine = now.iter().map(|&(multiplier, holds)| RowStart {
+            multiplier,
+            holds: holds.into(),
+        });
+        let taken = contact.forth(&self.session, &mine.collect::<Vec<_>>());
+        rows.extend(taken.iter().map(|row| (row.multiplier, row.holds != 0)));
         Start {
             inside,
             rows,

@@ -6,6 +6,7 @@
 use super::hold::Bond;
 use crate::Result;
 use base::linalg::union_find::UnionFind;
+use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{gather_all, sum_all};
 use petsc::{partition as by_petsc, Options, Session};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -63,20 +64,32 @@ pub fn partition(
     Ok(words.iter().map(|&g| g as u64).collect())
 }
 
+/// A [`Bond`] on its way to other ranks.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SentBond {
+    low: usize,
+    high: usize,
+    shared: usize,
+    holds: usize,
+}
+
 /// The bonds of all ranks, on all of them. Collective.
 fn everywhere(session: &Session, mine: &[Bond]) -> Vec<Bond> {
-    let words = mine.iter().flat_map(|b| {
-        let holds = u64::from(b.holds);
-        [b.low as u64, b.high as u64, (b.shared as u64) << 1 | holds]
+    let mine = mine.iter().map(|b| SentBond {
+        low: b.low,
+        high: b.high,
+        shared: b.shared,
+        holds: b.holds.into(),
     });
-    let words = gather_all(session.comm(), &words.collect::<Vec<u64>>()).concat();
-    let bond = |w: &[u64]| Bond {
-        low: w[0] as usize,
-        high: w[1] as usize,
-        shared: (w[2] >> 1) as usize,
-        holds: w[2] & 1 == 1,
+    let all = gather_all(session.comm(), &mine.collect::<Vec<_>>()).concat();
+    let bond = |b: SentBond| Bond {
+        low: b.low,
+        high: b.high,
+        shared: b.shared,
+        holds: b.holds != 0,
     };
-    words.chunks_exact(3).map(bond).collect()
+    all.into_iter().map(bond).collect()
 }
 
 /// The body of every subdomain if these are the groups, numbered from 0 by lowest subdomain: a group that is not
