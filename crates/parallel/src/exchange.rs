@@ -74,11 +74,6 @@ pub fn exchange_by_rank<M: Message>(comm: &SimpleCommunicator, mut outgoing: Vec
     all
 }
 
-/// [`exchange_by_rank`] of numbers.
-pub fn exchange_words(comm: &SimpleCommunicator, outgoing: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
-    exchange_by_rank(comm, outgoing)
-}
-
 /// Start of each list when the lists are stored one after the other.
 fn starts(counts: &[i32]) -> Vec<i32> {
     let mut sum = 0;
