@@ -191,17 +191,14 @@ impl Object {
     /// Results of all mortars, on all ranks. Collective.
     pub fn at_nodes(&self, placed: &[Placed], given: &GivenResults) -> AtNodes {
         let first = given.multipliers.len() - placed.len();
-        let sent = placed.iter().enumerate().map(|(i, at)| {
-            let k = first + i;
-            SentResult {
-                mortar: at.mortar,
-                component: at.component,
-                node: at.node,
-                active: given.holds[k].into(),
-                multiplier: given.multipliers[k],
-                area: at.area,
-                gap: given.gaps[k],
-            }
+        let sent = placed.iter().zip(first..).map(|(at, k)| SentResult {
+            mortar: at.mortar,
+            component: at.component,
+            node: at.node,
+            active: given.holds[k].into(),
+            multiplier: given.multipliers[k],
+            area: at.area,
+            gap: given.gaps[k],
         });
         let all = gather_all(self.session.comm(), &sent.collect::<Vec<_>>()).concat();
         let one = |w: SentResult| {

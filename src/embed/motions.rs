@@ -17,7 +17,6 @@ use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::{Error, Result};
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange_by_rank};
 use parallel::parcels::Parcels;
 use petsc::Session;
@@ -158,15 +157,6 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// Two neighbours, and the number of dofs that they share: the higher one sends its motions there.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Between {
-    low: u32,
-    high: u32,
-    dofs: usize,
-}
-
 /// For every part, by higher neighbour, an orthogonal basis of the motions of both at the dofs that they share.
 /// Collective.
 fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap<u32, Columns>> {
@@ -175,24 +165,17 @@ fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap
     for (j, basis) in bases.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for (low, dofs) in sharers.neighbours[j].iter().filter(|n| n.0 < me) {
-            let between = Between {
-                low: *low,
-                high: me,
-                dofs: dofs.len(),
-            };
-            let entries = basis
-                .iter()
-                .flat_map(|x| dofs.iter().map(|&i| x[i as usize]));
-            outgoing[sharers.owners.of(*low)].push(between, entries);
+            let on =
+                |x: &'_ Vec<f64>| -> Vec<f64> { dofs.iter().map(|&i| x[i as usize]).collect() };
+            let entries = basis.iter().flat_map(on);
+            outgoing[sharers.owners.of(*low)].push([*low, me, dofs.len() as u32], entries);
         }
     }
     let mut theirs: HashMap<(u32, u32), Columns> = HashMap::new();
     let received = exchange_by_rank(session.comm(), outgoing);
-    for (between, entries) in received.iter().flat_map(Parcels::iter) {
-        let columns = entries
-            .chunks_exact(between.dofs.max(1))
-            .map(<[f64]>::to_vec);
-        theirs.insert((between.low, between.high), columns.collect());
+    for ([low, high, n], entries) in received.iter().flat_map(Parcels::iter) {
+        let columns = entries.chunks_exact(n.max(1) as usize);
+        theirs.insert((low, high), columns.map(<[f64]>::to_vec).collect());
     }
     let of_part = |(j, basis): (usize, &Columns)| {
         let me = (sharers.first + j) as u32;

@@ -6,7 +6,6 @@
 use super::hold::Bond;
 use crate::Result;
 use base::linalg::union_find::UnionFind;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{gather_all, sum_all};
 use petsc::{partition as by_petsc, Options, Session};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -64,30 +63,16 @@ pub fn partition(
     Ok(words.iter().map(|&g| g as u64).collect())
 }
 
-/// A [`Bond`] on its way to other ranks.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct SentBond {
-    low: usize,
-    high: usize,
-    shared: usize,
-    holds: usize,
-}
-
 /// The bonds of all ranks, on all of them. Collective.
 fn everywhere(session: &Session, mine: &[Bond]) -> Vec<Bond> {
-    let mine = mine.iter().map(|b| SentBond {
-        low: b.low,
-        high: b.high,
-        shared: b.shared,
-        holds: b.holds.into(),
-    });
+    let mine = mine.iter();
+    let mine = mine.map(|b| [b.low, b.high, b.shared, b.holds.into()]);
     let all = gather_all(session.comm(), &mine.collect::<Vec<_>>()).concat();
-    let bond = |b: SentBond| Bond {
-        low: b.low,
-        high: b.high,
-        shared: b.shared,
-        holds: b.holds != 0,
+    let bond = |[low, high, shared, holds]: [usize; 4]| Bond {
+        low,
+        high,
+        shared,
+        holds: holds != 0,
     };
     all.into_iter().map(bond).collect()
 }

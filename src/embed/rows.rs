@@ -6,18 +6,8 @@ use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 use base::linalg::sorted::distinct;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::exchange;
 use petsc::Session;
-
-/// Two bodies, and a dof that they share.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Tie {
-    a: u32,
-    b: u32,
-    dof: u32,
-}
 
 /// The rows u_a − u_b = 0 for every pair of bodies a < b at every dof. The rank of the dof's lowest subdomain provides
 /// them, or the rank that holds the host's rows with this dof. Collective.
@@ -50,7 +40,7 @@ pub fn rows(
         ),
     };
     let mut out = Vec::new();
-    let mut elsewhere: Vec<Vec<Tie>> = vec![Vec::new(); session.size()];
+    let mut elsewhere: Vec<Vec<[u32; 3]>> = vec![Vec::new(); session.size()];
     for (j, part) in parts.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for &dof in &part.dofs {
@@ -64,7 +54,7 @@ pub fn rows(
                     match contact.block(dof) {
                         None => out.push(tie(a, b, dof)),
                         Some(root) => {
-                            elsewhere[root as usize % session.size()].push(Tie { a, b, dof });
+                            elsewhere[root as usize % session.size()].push([a, b, dof]);
                         }
                     }
                 }
@@ -73,7 +63,7 @@ pub fn rows(
     }
     if contact.n_global > 0 {
         let received = exchange(session.comm(), elsewhere).into_iter();
-        out.extend(received.map(|t| tie(t.a, t.b, t.dof)));
+        out.extend(received.map(|[a, b, dof]| tie(a, b, dof)));
     }
     out
 }

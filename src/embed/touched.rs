@@ -10,7 +10,6 @@ use super::torn::GivenRow;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange, exchange_by_rank};
 use parallel::halo::Halo;
 use parallel::owners::Owners;
@@ -162,8 +161,7 @@ fn reported(
     let touched: Vec<u32> = touched.map(|(&dof, _)| dof).collect();
     let mut outgoing = vec![Vec::new(); session.size()];
     let mut report = |dof: u32, body: u64| {
-        let at = u64::from(dof);
-        outgoing[owners.of(dof)].push(DofBody { dof: at, body });
+        outgoing[owners.of(dof)].push([u64::from(dof), body]);
     };
     for &dof in touched.iter().filter(|d| here.known.contains(d)) {
         report(dof, KNOWN);
@@ -181,10 +179,9 @@ fn reported(
     }
     let received = exchange_by_rank(session.comm(), outgoing);
     for (rank, reports) in received.into_iter().enumerate() {
-        for report in reports {
-            let dof = owned.get_mut(&(report.dof as u32));
-            let dof = dof.expect("it was marked");
-            dof.holder = match (dof.holder, report.body) {
+        for [dof, body] in reports {
+            let dof = owned.get_mut(&(dof as u32)).expect("it was marked");
+            dof.holder = match (dof.holder, body) {
                 (Holder::Body(known), body) => Holder::Body(known.min(body)),
                 (Holder::Known(first), KNOWN) => Holder::Known(first),
                 (Holder::Nobody, KNOWN) => Holder::Known(rank),
@@ -196,14 +193,6 @@ fn reported(
         }
     }
     Ok(())
-}
-
-/// A dof, and a body that has it.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct DofBody {
-    dof: u64,
-    body: u64,
 }
 
 /// In the place of a body: the dof is known.

@@ -53,12 +53,12 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
         let work: f64 = loads.clone().zip(&idle.values).map(|(f, v)| f * v).sum();
         [work, loads.map(|f| f * f).sum()]
     });
-    let strains = each(local).map(|(key, _, idle)| Strained {
+    let strains = each(local).map(|(key, _, idle)| OfMotion {
         key,
-        strain: idle.strain,
+        values: [idle.strain, 0.0],
     });
     let strains = gather_all(comm, &strains.collect::<Vec<_>>()).concat();
-    let strains: BTreeMap<u64, f64> = strains.iter().map(|s| (s.key, s.strain)).collect();
+    let strains: BTreeMap<u64, f64> = strains.iter().map(|s| (s.key, s.values[0])).collect();
     let most = |key: &u64| WORK.max(TURNED * strains[key]).min(0.1);
     let driven = sums
         .iter()
@@ -104,14 +104,6 @@ pub fn settle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]
             u[i as usize] -= along * v;
         }
     }
-}
-
-/// The strain of a motion, by its body and number.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Strained {
-    key: u64,
-    strain: f64,
 }
 
 /// Numbers about a part of a motion, by its body and number.

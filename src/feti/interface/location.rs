@@ -74,15 +74,6 @@ struct BodyPart {
     subdomains: usize,
 }
 
-/// The [`Home`] of a body, as the rendezvous rank answers.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct BodyHome {
-    body: usize,
-    rank: u32,
-    is_cut: u32,
-}
-
 /// The homes of the bodies of this rank. Collective.
 pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<usize, Home> {
     let size = comm.size() as usize;
@@ -115,21 +106,17 @@ pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<us
     }
     let home = |part: &BodyPart| {
         let Home { rank, is_cut } = found[&part.body].1;
-        BodyHome {
-            body: part.body,
-            rank,
-            is_cut: is_cut.into(),
-        }
+        [part.body, rank as usize, is_cut.into()]
     };
     let answers = received
         .iter()
         .map(|parts| parts.iter().map(home).collect());
-    let home = |h: BodyHome| Home {
-        rank: h.rank,
-        is_cut: h.is_cut != 0,
+    let home = |[body, rank, cut]: [usize; 3]| {
+        let (rank, is_cut) = (rank as u32, cut != 0);
+        (body, Home { rank, is_cut })
     };
-    let all = exchange(comm, answers.collect()).into_iter();
-    all.map(|h| (h.body, home(h))).collect()
+    let answers = exchange(comm, answers.collect()).into_iter();
+    answers.map(home).collect()
 }
 
 /// Whether each subdomain number below n_subdomains is used once, and each body exists. Each rank looks at a part of

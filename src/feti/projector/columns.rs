@@ -8,7 +8,6 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 
 use crate::feti::primal::space::OwnedBody;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 
 /// The columns of all bodies, and the ranks that own the bodies.
@@ -20,26 +19,15 @@ pub struct KernelColumns {
     home: Vec<u32>,
 }
 
-/// A floating body, and the number of its columns.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct FloatingBody {
-    body: usize,
-    columns: usize,
-}
-
 impl KernelColumns {
     /// From the bodies that this rank owns, whose kernels are known. Collective.
     pub fn new(comm: &SimpleCommunicator, n_bodies: usize, owned: &[OwnedBody]) -> KernelColumns {
         let floating = owned.iter().filter(|b| b.z.cols > 0);
-        let mine = floating.map(|b| FloatingBody {
-            body: b.body,
-            columns: b.z.cols,
-        });
+        let mine = floating.map(|b| [b.body, b.z.cols]);
         let (mut start, mut home) = (vec![0; n_bodies + 1], vec![0; n_bodies]);
         let all = gather_all(comm, &mine.collect::<Vec<_>>());
         for (rank, bodies) in (0..).zip(&all) {
-            for &FloatingBody { body, columns } in bodies {
+            for &[body, columns] in bodies {
                 home[body] = rank;
                 start[body + 1] = columns;
             }

@@ -6,7 +6,6 @@ use mpi::traits::Communicator;
 use crate::feti::interface::location::Locations;
 use crate::feti::jump::blocks::Block;
 use base::linalg::sorted::distinct;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange, offsets};
 
 /// The dofs of coupled blocks, numbered block after block on the rank that owns the block.
@@ -23,15 +22,6 @@ pub struct Slots {
 /// (Index among the ghosts, local dof) of the dofs in coupled blocks that a subdomain has.
 pub type Places = Vec<(u32, u32)>;
 
-/// The global number of the slot of a copy.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct SlotOfCopy {
-    subdomain: u32,
-    local: u32,
-    slot: u32,
-}
-
 impl Slots {
     /// Tells the subdomains which of their dofs are in coupled blocks. Also returns these places for each local
     /// subdomain; `subdomains` lists them. Collective.
@@ -47,24 +37,21 @@ impl Slots {
             return (Slots::default(), places);
         }
         let (first, _) = offsets(comm, n_owned);
-        let mut outgoing: Vec<Vec<SlotOfCopy>> = vec![Vec::new(); comm.size() as usize];
+        let mut outgoing: Vec<Vec<[u32; 3]>> = vec![Vec::new(); comm.size() as usize];
         for block in blocks {
             for (slot, copies) in block.slots.clone().zip(block.copies()) {
                 for copy in copies {
-                    outgoing[locations.rank(copy.subdomain)].push(SlotOfCopy {
-                        subdomain: copy.subdomain,
-                        local: copy.local,
-                        slot: (first + slot) as u32,
-                    });
+                    let to = &mut outgoing[locations.rank(copy.subdomain)];
+                    to.push([copy.subdomain, copy.local, (first + slot) as u32]);
                 }
             }
         }
         let received = exchange(comm, outgoing);
-        let ghosts = distinct(received.iter().map(|copy| copy.slot));
-        for copy in received {
-            let j = subdomains.binary_search(&copy.subdomain);
-            let ghost = ghosts.binary_search(&copy.slot);
-            let place = (ghost.expect("it was collected") as u32, copy.local);
+        let ghosts = distinct(received.iter().map(|&[_, _, slot]| slot));
+        for [subdomain, local, slot] in received {
+            let j = subdomains.binary_search(&subdomain);
+            let ghost = ghosts.binary_search(&slot);
+            let place = (ghost.expect("it was collected") as u32, local);
             places[j.expect("it was sent to the rank of the subdomain")].push(place);
         }
         places.iter_mut().for_each(|list| list.sort_unstable());
