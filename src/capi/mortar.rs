@@ -173,7 +173,7 @@ struct MortarFacts {
     gap: f64,
 }
 
-/// What a rank gives for a node of the first surface.
+/// The data that a rank gives for a node of the first surface.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct MortarNode {

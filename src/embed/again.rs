@@ -13,7 +13,6 @@ use crate::feti::Numbers;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 use crate::{Error, FetiFeti, Result};
 use base::linalg::csr::Csr;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::any;
 use petsc::Mat;
 
@@ -36,14 +35,6 @@ struct Start {
     rows: Vec<(f64, bool)>,
     /// Multipliers and states of the rows that this rank gave.
     given: GivenResults,
-}
-
-/// Multiplier and state of a row on their way to the rank that takes it.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct RowStart {
-    multiplier: f64,
-    holds: u64,
 }
 
 /// The subject of a row of the host: the node of its first term, its kind, and its number among the rows with these.
@@ -199,12 +190,9 @@ impl Embedded {
         let now = subjects(given, self.frame.block_size).into_iter();
         let now = now.map(|s| known.get(&s).copied().unwrap_or((0.0, true)));
         let now: Vec<(f64, bool)> = now.collect();
-        let mine = now.iter().map(|&(multiplier, holds)| RowStart {
-            multiplier,
-            holds: holds.into(),
-        });
+        let mine = now.iter().map(|&(m, holds)| [m, f64::from(holds)]);
         let taken = contact.forth(&self.session, &mine.collect::<Vec<_>>());
-        rows.extend(taken.iter().map(|row| (row.multiplier, row.holds != 0)));
+        rows.extend(taken.iter().map(|&[m, holds]| (m, holds != 0.0)));
         Start {
             inside,
             rows,

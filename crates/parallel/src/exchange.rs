@@ -12,7 +12,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 use super::traffic::Traffic;
 use crate::traffic;
 
-/// What a rank sends another one: a list of records, or [`Parcels`](super::parcels::Parcels).
+/// A message of a rank to another one: a list of records, or [`Parcels`](super::parcels::Parcels).
 pub trait Message: Default {
     /// Appends the message; an empty one has no words.
     fn write(&self, words: &mut Vec<u32>);

@@ -30,7 +30,7 @@ pub struct Sliding {
     pub turned: f64,
 }
 
-/// What the rows of one source that a rank has say of its sliding.
+/// The sliding of one source by the rows that a rank has.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct SourceSliding {

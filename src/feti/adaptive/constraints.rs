@@ -70,21 +70,20 @@ pub fn find(
     let rank_of = |s: u32| sharing.locations.rank(s);
     let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
     let of = |j: usize, class: &Class| ClassSharer::new(class, problem.local[j].index as u32);
-    let (mut numbers, mut names) = (Parcels::for_each_rank(comm), Parcels::for_each_rank(comm));
+    let (mut entries, mut names) = (Parcels::for_each_rank(comm), Parcels::for_each_rank(comm));
     for (j, list) in classes.iter().enumerate() {
         for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
             let (to, part) = (rank_of(class.sharers[0]), part(j, class));
-            numbers[to].push(PartOrders::new(&part), part_numbers(&part));
+            entries[to].push(orders(&part), numbers(&part));
             names[to].push(of(j, class), part.names);
         }
     }
-    let numbers = exchange_by_rank(comm, numbers);
+    let entries = exchange_by_rank(comm, entries);
     let names = exchange_by_rank(comm, names);
     let mut received: HashMap<ClassSharer, Part> = HashMap::new();
-    for (numbers, names) in numbers.iter().zip(&names) {
-        for ((orders, numbers), (of, names)) in numbers.iter().zip(names.iter()) {
-            received.insert(of, orders.part(numbers, names));
-        }
+    let entries = entries.iter().flat_map(Parcels::iter);
+    for ((orders, numbers), (of, names)) in entries.zip(names.iter().flat_map(Parcels::iter)) {
+        received.insert(of, part_of(orders, numbers, names));
     }
     let mut here: HashMap<ClassSharer, (usize, &Class)> = HashMap::new();
     let mut owned = Vec::new();
@@ -294,50 +293,31 @@ impl ClassSharer {
     }
 }
 
-/// The orders of the matrices of a [`Part`]: N, n and n_Π.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct PartOrders {
-    jumps: usize,
-    dofs: usize,
-    primal: usize,
+/// The orders N, n and n_Π of the matrices of a part.
+fn orders(part: &Part) -> [usize; 3] {
+    [&part.a, &part.t, &part.sigma].map(|m| m.rows)
 }
 
-impl PartOrders {
-    fn new(part: &Part) -> PartOrders {
-        PartOrders {
-            jumps: part.a.rows,
-            dofs: part.t.rows,
-            primal: part.sigma.rows,
-        }
-    }
-
-    /// The part with these orders, [`part_numbers`] and names.
-    fn part(&self, mut numbers: &[f64], names: &[[u64; 2]]) -> Part {
-        let &PartOrders {
-            jumps,
-            dofs,
-            primal,
-        } = self;
-        let mut matrix = |rows: usize, cols: usize| {
-            let (data, rest) = numbers.split_at(rows * cols);
-            numbers = rest;
-            let data = data.to_vec();
-            Dense { rows, cols, data }
-        };
-        Part {
-            a: matrix(jumps, jumps),
-            t: matrix(dofs, dofs),
-            psi: matrix(dofs, primal),
-            sigma: matrix(primal, primal),
-            stiff: numbers.to_vec(),
-            names: names.to_vec(),
-        }
+/// The part with these orders, [`numbers`] and names.
+fn part_of([jumps, n, n_pi]: [usize; 3], mut numbers: &[f64], names: &[[u64; 2]]) -> Part {
+    let mut matrix = |rows: usize, cols: usize| {
+        let (data, rest) = numbers.split_at(rows * cols);
+        numbers = rest;
+        let data = data.to_vec();
+        Dense { rows, cols, data }
+    };
+    Part {
+        a: matrix(jumps, jumps),
+        t: matrix(n, n),
+        psi: matrix(n, n_pi),
+        sigma: matrix(n_pi, n_pi),
+        stiff: numbers.to_vec(),
+        names: names.to_vec(),
     }
 }
 
 /// The entries of the matrices of a part, and its stiffnesses.
-fn part_numbers(part: &Part) -> impl Iterator<Item = f64> + '_ {
+fn numbers(part: &Part) -> impl Iterator<Item = f64> + '_ {
     let matrices = [&part.a, &part.t, &part.psi, &part.sigma];
     let entries = matrices.into_iter().flat_map(|m| &m.data);
     entries.chain(&part.stiff).copied()

@@ -7,7 +7,6 @@ use rustc_hash::FxHashMap;
 
 use crate::substructures::Substructures;
 use crate::{Error, Result};
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange, exchange_by_rank};
 
 /// Where a subdomain is.
@@ -65,48 +64,35 @@ pub struct Home {
     pub is_cut: bool,
 }
 
-/// The subdomains of a body that a rank has.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct BodyPart {
-    body: usize,
-    lowest: usize,
-    subdomains: usize,
-}
-
 /// The homes of the bodies of this rank. Collective.
 pub fn homes(comm: &SimpleCommunicator, problem: &Substructures) -> FxHashMap<usize, Home> {
     let size = comm.size() as usize;
     let own = problem.local.iter().map(|s| (s.body, s.index));
     let mut own: Vec<(usize, usize)> = own.collect();
     own.sort_unstable();
-    let mut reports: Vec<Vec<BodyPart>> = vec![Vec::new(); size];
+    let mut reports: Vec<Vec<[usize; 3]>> = vec![Vec::new(); size];
     for group in own.chunk_by(|a, b| a.0 == b.0) {
         let (body, lowest) = group[0];
-        reports[body % size].push(BodyPart {
-            body,
-            lowest,
-            subdomains: group.len(),
-        });
+        reports[body % size].push([body, lowest, group.len()]);
     }
     let received = exchange_by_rank(comm, reports);
     let mut found: FxHashMap<usize, (usize, Home)> = FxHashMap::default();
     for (rank, parts) in (0..).zip(&received) {
-        for part in parts {
-            let is_cut = part.subdomains > 1;
-            let new = (part.lowest, Home { rank, is_cut });
-            let known = found.entry(part.body);
+        for &[body, lowest, subdomains] in parts {
+            let is_cut = subdomains > 1;
+            let new = (lowest, Home { rank, is_cut });
+            let known = found.entry(body);
             let known = known.and_modify(|old| {
-                let lower = if part.lowest < old.0 { new } else { *old };
+                let lower = if lowest < old.0 { new } else { *old };
                 *old = lower;
                 old.1.is_cut = true;
             });
             known.or_insert(new);
         }
     }
-    let home = |part: &BodyPart| {
-        let Home { rank, is_cut } = found[&part.body].1;
-        [part.body, rank as usize, is_cut.into()]
+    let home = |&[body, ..]: &[usize; 3]| {
+        let Home { rank, is_cut } = found[&body].1;
+        [body, rank as usize, is_cut.into()]
     };
     let answers = received
         .iter()

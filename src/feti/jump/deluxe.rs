@@ -20,18 +20,8 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::Substructures;
 use base::linalg::dense::{self, Dense, Scratch};
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::exchange_by_rank;
 use parallel::parcels::Parcels;
-
-/// A group, and two subdomains that share it: where S comes from and where it goes.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct GroupSharers {
-    group: u64,
-    to: u32,
-    from: u32,
-}
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
@@ -56,27 +46,23 @@ pub fn apply(
         for group in &groups[j] {
             let s = locals[j].s_on(&group.at);
             for &to in &group.sharers {
-                let of = GroupSharers {
-                    group: group.name(),
-                    to,
-                    from: sub.index as u32,
-                };
-                outgoing[sharing.locations.rank(to)].push(of, s.data.iter().copied());
+                let (of, entries) = ([to.into(), sub.index as u64, group.name()], s.data.iter());
+                outgoing[sharing.locations.rank(to)].push(of, entries.copied());
             }
         }
     }
-    let mut received: HashMap<(u32, u64), BTreeMap<u32, Vec<f64>>> = HashMap::new();
-    for (of, data) in exchange_by_rank(comm, outgoing)
+    let mut received: HashMap<(u64, u64), BTreeMap<u64, Vec<f64>>> = HashMap::new();
+    for ([to, from, group], data) in exchange_by_rank(comm, outgoing)
         .iter()
         .flat_map(Parcels::iter)
     {
-        let of_group = received.entry((of.to, of.group)).or_default();
-        of_group.insert(of.from, data.to_vec());
+        let of_group = received.entry((to, group)).or_default();
+        of_group.insert(from, data.to_vec());
     }
     let mut more = vec![Vec::new(); locals.len()];
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
-            let schur = &received[&(sub.index as u32, group.name())];
+            let schur = &received[&(sub.index as u64, group.name())];
             // All sharers add the same numbers in the same order, so that their results are identical.
             if let Some(weights) = group.weights(schur.values()) {
                 let own = group.sharers.binary_search(&(sub.index as u32));

@@ -15,7 +15,6 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Substructures;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
-use bytemuck::{Pod, Zeroable};
 use parallel::exchange::exchange_by_rank;
 use parallel::parcels::Parcels;
 
@@ -47,16 +46,6 @@ enum Source {
     Local(usize),
     /// Rows that another rank has sent, those of one contribution.
     Remote(Dense),
-}
-
-/// The contribution of one subdomain to another one that another rank has: how many columns it has. Their global
-/// numbers follow, and the local dofs of the rows; the entries of the columns are messages of their own.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Given {
-    from: u64,
-    to: u32,
-    columns: u32,
 }
 
 /// The recipes of every local subdomain; exchanges rows of Ψ between ranks.
@@ -108,6 +97,7 @@ pub(crate) fn recipes(
         }
         lists
     });
+    // The numbers of the columns and then the local dofs of the rows; the entries, column after column.
     let mut numbers = Parcels::for_each_rank(comm);
     let mut values = Parcels::for_each_rank(comm);
     let mut received: Vec<Vec<Contribution>> = locals.iter().map(|_| Vec::new()).collect();
@@ -126,30 +116,26 @@ pub(crate) fn recipes(
                 });
             } else {
                 let columns = columns(j);
-                let given = Given {
-                    from,
-                    to,
-                    columns: columns.len() as u32,
-                };
                 let n = columns.len();
                 let dofs = rows.iter().map(|row| row.0);
                 let psi = &functions[j].psi;
                 let entries = (0..n).flat_map(|c| rows.iter().map(move |row| (row, c)));
                 let entries = entries.map(|(row, c)| row.2 * psi.get(row.1 as usize, c));
                 values[rank].push((), entries);
-                numbers[rank].push(given, columns.into_iter().chain(dofs));
+                numbers[rank].push([to.into(), from, n as u64], columns.into_iter().chain(dofs));
             }
         }
     }
     let numbers = exchange_by_rank(comm, numbers);
     let values = exchange_by_rank(comm, values);
     let pairs = numbers.iter().flat_map(Parcels::iter);
-    for ((given, numbers), ((), values)) in pairs.zip(values.iter().flat_map(Parcels::iter)) {
-        let j = jump.local_index(given.to);
-        let (columns, dofs) = numbers.split_at(given.columns as usize);
+    for (([to, from, n], numbers), ((), values)) in pairs.zip(values.iter().flat_map(Parcels::iter))
+    {
+        let j = jump.local_index(to as u32);
+        let (columns, dofs) = numbers.split_at(n as usize);
         let row = |(&dof, r): (&u32, u32)| (places[j][dof as usize], r, 1.0);
         received[j].push(Contribution {
-            from: given.from,
+            from,
             columns: columns.to_vec(),
             rows: dofs.iter().zip(0..).map(row).collect(),
             source: Source::Remote(Dense {

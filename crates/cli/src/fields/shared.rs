@@ -9,20 +9,11 @@ use petsc::Session;
 use scene::assembly::recovery::Sum;
 use scene::Scene;
 
-/// A node of a body, and a material around it.
-#[repr(C)]
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable)]
-struct NodeMaterial {
-    body: usize,
-    node: usize,
-    material: usize,
-}
-
-/// The sum of a rank there.
+/// The sum of a rank at a node: body, node and material.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct NodeSum {
-    at: NodeMaterial,
+    at: [usize; 3],
     sum: Sum,
 }
 
@@ -46,17 +37,13 @@ pub(super) fn add(
     for (p, (&BodyNode { body, node }, sum)) in nodes.iter().zip(&*sums).enumerate() {
         if scene.bodies[body].mesh().multiplicity(node) > 1 {
             let home = (body + node) % size;
-            let at = NodeMaterial {
-                body,
-                node,
-                material: material[p] as usize,
-            };
+            let at = [body, node, material[p] as usize];
             outgoing[home].push(NodeSum { at, sum: *sum });
             sent[home].push(p);
         }
     }
     let received = exchange_by_rank(session.comm(), outgoing);
-    let mut totals: HashMap<NodeMaterial, Sum> = HashMap::new();
+    let mut totals: HashMap<[usize; 3], Sum> = HashMap::new();
     for part in received.iter().flatten() {
         totals.entry(part.at).or_default().merge(&part.sum);
     }
