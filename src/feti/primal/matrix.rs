@@ -39,13 +39,17 @@ impl Blocks {
         }
     }
 
-    /// The numbers of the dofs of block `k`, and what is there from its entries on.
+    /// The numbers of the dofs of block `k`, and its entries.
     fn get(&self, k: usize) -> (&[u32], &[f64]) {
         let (start, numbers) = self.numbers.get(k);
-        (numbers, &self.entries[start..])
+        let end = match k + 1 < self.numbers.len() {
+            true => self.numbers.get(k + 1).0,
+            false => self.entries.len(),
+        };
+        (numbers, &self.entries[start..end])
     }
 
-    /// For each block the numbers of its dofs, and what is there from its entries on.
+    /// For each block the numbers of its dofs, and its entries.
     pub fn iter(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
         (0..self.numbers.len()).map(|k| self.get(k))
     }
@@ -122,7 +126,7 @@ impl PrimalMatrix {
         blocks.map(move |&(_, sender, at)| {
             let (numbers, entries) = self.received[sender as usize].get(at);
             let dofs = numbers.iter().map(|&g| g - offset);
-            (dofs.collect(), &entries[..numbers.len().pow(2)])
+            (dofs.collect(), entries)
         })
     }
 
