@@ -6,8 +6,9 @@ use super::surface::Surface;
 use crate::substructures::RowKind;
 use crate::Result;
 use base::Fault;
+use bytemuck::{bytes_of, Pod, Zeroable};
 use elements::mortar::{self, reach, Sample, Side};
-use parallel::exchange::gather_all;
+use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// The data that one rank gives for a pair of surfaces.
@@ -66,9 +67,9 @@ impl Surfaces<'_> {
     /// Surfaces that do not face each other, and numbers that are not admissible; the same on all ranks.
     pub fn mortar(&self, given: &GivenMortar<'_>) -> Result<Mortar> {
         self.session.agree(self.check(given))?;
-        let words = self.words(given);
-        let all = gather_all(self.session.comm(), &words);
-        if all.iter().any(|w| w[..6] != all[0][..6]) {
+        let all = self.sent(given).gather_all(self.session.comm());
+        let facts = |k: usize| all[k].get(0).0;
+        if (0..all.len()).any(|k| bytes_of(&facts(k)) != bytes_of(&facts(0))) {
             return Err(Fault::Wrong.error(
                 "ranks give a mortar different surfaces, kinds, reaches, values of adjust or gaps, \
                  expected the same (gaps by node go into the array)",
@@ -77,11 +78,12 @@ impl Surfaces<'_> {
         let pair = given.surfaces.map(|k| k as usize);
         let [first, second] = pair.map(|k| &self.list[k]);
         let n = first.dofs.len();
-        let mut at: BTreeMap<u64, (u64, u64)> = BTreeMap::new();
-        for node in all.iter().flat_map(|w| w[6..].chunks_exact(3)) {
-            let known = *at.entry(node[0]).or_insert((node[1], node[2]));
-            if known != (node[1], node[2]) {
-                let x = first.side.points()[node[0] as usize];
+        let mut at: BTreeMap<usize, (f64, bool)> = BTreeMap::new();
+        for node in all.iter().flat_map(|given| given.get(0).1) {
+            let new = (node.gap, node.without != 0);
+            let known = *at.entry(node.node as usize).or_insert(new);
+            if known != new {
+                let x = first.side.points()[node.node as usize];
                 return Err(Fault::Wrong.error(format!(
                     "ranks give the node at {:?} of surface {} different gaps, or only one of them leaves it \
                      without a multiplier, expected the same",
@@ -90,15 +92,13 @@ impl Surfaces<'_> {
                 )));
             }
         }
-        let of = |k: usize| at.get(&(k as u64)).copied().unwrap_or_default();
+        let of = |k: usize| at.get(&k).copied().unwrap_or_default();
         Ok(Mortar {
             surfaces: pair,
             kind: given.kind,
             adjust: given.adjust.max(0.0),
-            gaps: (0..n)
-                .map(|k| given.gap + f64::from_bits(of(k).0))
-                .collect(),
-            without: (0..n).map(|k| of(k).1 != 0).collect(),
+            gaps: (0..n).map(|k| given.gap + of(k).0).collect(),
+            without: (0..n).map(|k| of(k).1).collect(),
             samples: samples(pair, &first.side, &second.side, given.reach)?,
         })
     }
@@ -138,22 +138,48 @@ impl Surfaces<'_> {
         Ok(())
     }
 
-    /// The data of a mortar that must be the same on all ranks, then (node, gap, without) of this rank's nodes.
-    fn words(&self, given: &GivenMortar<'_>) -> Vec<u64> {
-        let [a, b] = given.surfaces.map(|k| k as u64);
-        let kind = u64::from(given.kind == RowKind::Inequality);
-        let mut out = vec![a, b, kind];
-        out.extend([given.reach, given.adjust, given.gap].map(f64::to_bits));
-        for (i, node) in self.list[a as usize].mine.iter().enumerate() {
-            let Some(node) = *node else {
-                continue;
-            };
-            let gap = given.gaps.get(i).copied().unwrap_or_default() + 0.0;
-            let without = given.without.get(i).is_some_and(|&w| w != 0);
-            out.extend([u64::from(node), gap.to_bits(), u64::from(without)]);
-        }
+    /// The data of a mortar that must be the same on all ranks, with this rank's nodes.
+    fn sent(&self, given: &GivenMortar<'_>) -> Parcels<MortarFacts, MortarNode> {
+        let facts = MortarFacts {
+            surfaces: given.surfaces,
+            inequality: u64::from(given.kind == RowKind::Inequality),
+            reach: given.reach,
+            adjust: given.adjust,
+            gap: given.gap,
+        };
+        let nodes = &self.list[given.surfaces[0] as usize].mine;
+        let nodes = nodes.iter().enumerate().filter_map(|(i, node)| {
+            Some(MortarNode {
+                node: (*node)?,
+                without: given.without.get(i).is_some_and(|&w| w != 0).into(),
+                // 0 and -0 are one gap.
+                gap: given.gaps.get(i).copied().unwrap_or_default() + 0.0,
+            })
+        });
+        let mut out = Parcels::default();
+        out.push(facts, nodes);
         out
     }
+}
+
+/// The data of a mortar that must be the same on all ranks.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct MortarFacts {
+    surfaces: [i32; 2],
+    inequality: u64,
+    reach: f64,
+    adjust: f64,
+    gap: f64,
+}
+
+/// The data that a rank gives for a node of the first surface.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct MortarNode {
+    node: u32,
+    without: u32,
+    gap: f64,
 }
 
 /// The points of quadrature.

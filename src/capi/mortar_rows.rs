@@ -12,6 +12,7 @@ use crate::substructures::RowKind;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::Fault;
+use bytemuck::{Pod, Zeroable};
 use elements::mortar::{distance, rows, Row};
 use parallel::exchange::gather_all;
 
@@ -154,17 +155,11 @@ impl Object {
     /// Collective.
     fn known(&self, held: IsHeld, numbers: &[Numbers]) -> Result<Known> {
         let all = distinct(numbers.iter().flatten().flatten().filter_map(|d| *d));
-        let mut words = Vec::new();
-        for &dof in &all {
-            if let Some(held) = held(dof) {
-                words.push(u64::from(dof) << 1 | u64::from(held));
-            }
-        }
-        let gathered = gather_all(self.session.comm(), &words).concat();
-        let held: HashMap<u32, bool> = gathered
-            .iter()
-            .map(|w| ((w >> 1) as u32, w & 1 == 1))
-            .collect();
+        let mine = all.iter().filter_map(|&dof| Some([dof, held(dof)?.into()]));
+        let mine: Vec<[u32; 2]> = mine.collect();
+        let gathered = gather_all(self.session.comm(), &mine).concat();
+        let held = gathered.iter().map(|&[dof, held]| (dof, held != 0));
+        let held: HashMap<u32, bool> = held.collect();
         if let Some(dof) = all.iter().find(|d| !held.contains_key(d)) {
             let nodes = numbers.iter().zip(&self.surfaces).enumerate();
             let mut found = nodes.filter_map(|(s, (list, surface))| {
@@ -183,39 +178,53 @@ impl Object {
         let pairs = self.rows.iter().filter(|r| r.origin == Origin::Pairs);
         for row in pairs.filter(|r| r.kind == RowKind::Equality) {
             for &(whose, dof, _) in &row.terms {
-                mine.push(u64::from(self.number(whose, dof, "contact pair")?));
+                mine.push(self.number(whose, dof, "contact pair")?);
             }
         }
         let tied = gather_all(self.session.comm(), &mine).concat();
         Ok(Known {
             held,
-            tied: tied.into_iter().map(|d| d as u32).collect(),
+            tied: tied.into_iter().collect(),
         })
     }
 
     /// Results of all mortars, on all ranks. Collective.
     pub fn at_nodes(&self, placed: &[Placed], given: &GivenResults) -> AtNodes {
         let first = given.multipliers.len() - placed.len();
-        let mut words = Vec::new();
-        for (i, at) in placed.iter().enumerate() {
-            let k = first + i;
-            words.extend([at.mortar as u64, u64::from(at.node), at.component as u64]);
-            words.extend([given.multipliers[k], at.area, given.gaps[k]].map(f64::to_bits));
-            words.push(u64::from(given.holds[k]));
-        }
-        let all = gather_all(self.session.comm(), &words).concat();
-        let one = |w: &[u64]| {
-            let [multiplier, area, gap] = [w[3], w[4], w[5]].map(f64::from_bits);
+        let sent = placed.iter().zip(first..).map(|(at, k)| SentResult {
+            mortar: at.mortar,
+            component: at.component,
+            node: at.node,
+            active: given.holds[k].into(),
+            multiplier: given.multipliers[k],
+            area: at.area,
+            gap: given.gaps[k],
+        });
+        let all = gather_all(self.session.comm(), &sent.collect::<Vec<_>>()).concat();
+        let one = |w: SentResult| {
             let at = AtNode {
-                multiplier,
-                area,
-                gap,
-                active: w[6] == 1,
+                multiplier: w.multiplier,
+                area: w.area,
+                gap: w.gap,
+                active: w.active != 0,
             };
-            ((w[0] as usize, w[1] as u32, w[2] as usize), at)
+            ((w.mortar, w.node, w.component), at)
         };
-        all.chunks_exact(7).map(one).collect()
+        all.into_iter().map(one).collect()
     }
+}
+
+/// A result at a node on its way to other ranks.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SentResult {
+    mortar: usize,
+    component: usize,
+    node: u32,
+    active: u32,
+    multiplier: f64,
+    area: f64,
+    gap: f64,
 }
 
 impl Object {

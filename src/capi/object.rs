@@ -13,7 +13,7 @@ use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Outcome, Torn, Work};
 use crate::{Error, Result};
 use base::Fault;
-use parallel::exchange::{exchange_words, highest};
+use parallel::exchange::{exchange, highest};
 use parallel::halo::Halo;
 use parallel::owners::Owners;
 use petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
@@ -324,12 +324,12 @@ impl Object {
         let owners = Owners::new(comm, range.start);
         let mut outgoing = vec![Vec::new(); self.session.size()];
         for &dof in list {
-            outgoing[owners.of(dof as u64)].push(dof as u64);
+            outgoing[owners.of(dof as u64)].push(dof as usize);
         }
         {
             let mut entries = marks.array_mut()?;
-            for dof in exchange_words(comm, outgoing).concat() {
-                entries[dof as usize - range.start] = 1.0;
+            for dof in exchange(comm, outgoing) {
+                entries[dof - range.start] = 1.0;
             }
         }
         let mut values = vec![0.0; ghosts.len()];

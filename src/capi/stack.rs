@@ -147,12 +147,11 @@ impl Stack {
 
     /// Appends a matrix. Collective.
     pub fn push(&mut self, session: &Session, local: LocalMatrix) {
-        let first = local.told.layout.ownership_range().start as u64;
-        let starts = gather_all(session.comm(), &[first]);
+        let first = local.told.layout.ownership_range().start as u32;
         self.0.push(Member {
             given: local.given,
             told: local.told,
-            starts: starts.iter().map(|w| w[0] as u32).collect(),
+            starts: gather_all(session.comm(), &[first]).concat(),
         });
     }
 

@@ -12,6 +12,7 @@ use base::linalg::vec3::{minus, norm};
 use base::Fault;
 use elements::mortar::{one_way, Face, Side};
 use parallel::exchange::gather_all;
+use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// Places of one node that differ by more than this part of the coordinates are different places.
@@ -123,28 +124,26 @@ impl GivenSurface<'_> {
         distinct(self.nodes.iter().map(|&k| k as usize))
     }
 
-    /// This rank's part as words: nodes in faces only, so that a host may give all its nodes.
-    fn pack(&self) -> Vec<u64> {
+    /// This rank's part as it is sent: nodes in faces only, so that a host may give all its nodes.
+    fn sent(&self) -> (Parcels<[f64; 3], i32>, Parcels<(), u32>) {
+        let (mut nodes, mut faces) = (Parcels::default(), Parcels::default());
         let used = self.used();
-        let faces = self.start.len().saturating_sub(1);
-        let mut out = vec![used.len() as u64, faces as u64];
         let (dim, components) = (self.dim as usize, self.components as usize);
         for &k in &used {
+            let mut place = [0.0; 3];
+            for (to, x) in place.iter_mut().zip(&self.coords[k * dim..][..dim]) {
+                // 0 and -0 are one place.
+                *to = x + 0.0;
+            }
             let dofs = &self.dofs[k * components..][..components];
-            out.extend(dofs.iter().map(|&d| i64::from(d.max(-1)) as u64));
-        }
-        for &k in &used {
-            // 0 and -0 are one place.
-            let x = &self.coords[k * dim..][..dim];
-            out.extend(x.iter().map(|x| (x + 0.0).to_bits()));
+            nodes.push(place, dofs.iter().map(|&d| d.max(-1)));
         }
         for range in self.start.windows(2) {
             let list = &self.nodes[range[0] as usize..range[1] as usize];
-            out.push(list.len() as u64);
-            let place = |&k: &i32| used.binary_search(&(k as usize)).expect("it is in a face");
-            out.extend(list.iter().map(|k| place(k) as u64));
+            let place = |k: &i32| used.binary_search(&(*k as usize)).expect("it is in a face");
+            faces.push((), list.iter().map(|k| place(k) as u32));
         }
-        out
+        (nodes, faces)
     }
 }
 
@@ -181,17 +180,20 @@ impl Surface {
     ) -> Result<Surface> {
         let numbering = session.agree(given.check(session.rank(), number, size))?;
         let (dim, components) = (given.dim as usize, given.components as usize);
-        let facts = [given.matrix.max(-1), given.dim, given.components].map(|v| v as u64);
-        let all = gather_all(session.comm(), &[&facts[..], &given.pack()].concat());
-        if all.iter().any(|words| words[..3] != all[0][..3]) {
+        let facts = [given.matrix.max(-1), given.dim, given.components];
+        let all = gather_all(session.comm(), &facts);
+        if all.iter().any(|facts| *facts != all[0]) {
             return Err(Fault::Wrong.error(format!(
                 "ranks give surface {number} different matrices, dimensions or numbers of unknowns in a node, \
                  expected the same"
             )));
         }
-        let parts: Vec<Part> = all
-            .iter()
-            .map(|words| Part::new(&words[3..], dim, components))
+        let (nodes, faces) = given.sent();
+        let nodes = nodes.gather_all(session.comm());
+        let faces = faces.gather_all(session.comm());
+        let parts = nodes.iter().zip(&faces);
+        let parts: Vec<Part> = parts
+            .map(|(nodes, faces)| Part::new(nodes, faces))
             .collect();
         let mut first: BTreeMap<Key, (usize, &Node)> = BTreeMap::new();
         for (rank, part) in parts.iter().enumerate() {
@@ -274,30 +276,15 @@ struct Part {
 }
 
 impl Part {
-    fn new(words: &[u64], dim: usize, components: usize) -> Part {
-        let n = words[0] as usize;
-        let (dofs, rest) = words[2..].split_at(n * components);
-        let (coords, mut rest) = rest.split_at(n * dim);
-        let node = |(dofs, x): (&[u64], &[u64])| {
-            let mut place = [0.0; 3];
-            for (to, &word) in place.iter_mut().zip(x) {
-                *to = f64::from_bits(word);
-            }
-            Node {
-                x: place,
-                dofs: dofs.iter().map(|&d| d as i64 as i32).collect(),
-            }
+    fn new(nodes: &Parcels<[f64; 3], i32>, faces: &Parcels<(), u32>) -> Part {
+        let node = |(x, dofs): ([f64; 3], &[i32])| Node {
+            x,
+            dofs: dofs.to_vec(),
         };
-        let pairs = dofs.chunks_exact(components).zip(coords.chunks_exact(dim));
-        let mut faces = Vec::new();
-        while let [length, tail @ ..] = rest {
-            let (list, tail) = tail.split_at(*length as usize);
-            faces.push(list.iter().map(|&k| k as usize).collect());
-            rest = tail;
-        }
+        let face = |((), list): ((), &[u32])| list.iter().map(|&k| k as usize).collect();
         Part {
-            nodes: pairs.map(node).collect(),
-            faces,
+            nodes: nodes.iter().map(node).collect(),
+            faces: faces.iter().map(face).collect(),
         }
     }
 }

@@ -25,7 +25,7 @@ use crate::{Error, Result};
 use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 use base::linalg::sorted::distinct;
-use parallel::exchange::gather_all;
+use parallel::parcels::Parcels;
 
 /// The iteration accepts the load as balanced if the rest of e is below this, relative to the loads.
 pub const NEARLY: f64 = 1e-7;
@@ -124,8 +124,8 @@ pub fn pushed_away(problem: &Problem, dual: &Dual, rest: &Motion, tolerance: f64
 /// The different directions among the rows of G, scaled to a largest entry of 1, as columns of length r; and for each
 /// of them whether it belongs to an equation. The same on every rank. Collective.
 fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (Dense, Vec<bool>) {
-    // [free, n, (column, value) × n] of each direction
-    let mut mine: Vec<Vec<u64>> = Vec::new();
+    // Of each direction whether it is free, the number of its entries, and their columns and bits.
+    let mut mine: Vec<(u64, usize, Vec<[u64; 2]>)> = Vec::new();
     for i in jump.rows_between_bodies() {
         if !jump.is_candidate(i) {
             continue;
@@ -134,30 +134,26 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
         if largest == 0.0 {
             continue;
         }
-        let entries: Vec<(usize, f64)> = g.row(i).filter(|e| e.1 != 0.0).collect();
-        let mut words = vec![u64::from(!jump.inequality[i]), entries.len() as u64];
-        for (c, v) in entries {
+        let entries = g.row(i).filter(|e| e.1 != 0.0).map(|(c, v)| {
             // Rounded, so that the rows of one flat face count once. 1e-13 is far below the differences that matter.
             let rounded = (v / largest * 1e13).round() / 1e13;
-            words.extend([c as u64, (rounded + 0.0).to_bits()]);
-        }
-        mine.push(words);
+            [c as u64, (rounded + 0.0).to_bits()]
+        });
+        let entries: Vec<[u64; 2]> = entries.collect();
+        mine.push((u64::from(!jump.inequality[i]), entries.len(), entries));
     }
-    let mut all: Vec<Vec<u64>> = Vec::new();
-    for words in gather_all(comm, &distinct(mine).concat()) {
-        let mut rest = &words[..];
-        while let [_, n, ..] = rest {
-            let (one, tail) = rest.split_at(2 + 2 * *n as usize);
-            all.push(one.to_vec());
-            rest = tail;
-        }
+    let mut sent = Parcels::default();
+    for (free, _, entries) in distinct(mine) {
+        sent.push(free, entries);
     }
-    let all = distinct(all);
+    let all = sent.gather_all(comm);
+    let all = all.iter().flat_map(Parcels::iter);
+    let all = distinct(all.map(|(free, entries)| (free, entries.len(), entries)));
     let mut columns = Dense::zeros(r, all.len());
-    for (k, words) in all.iter().enumerate() {
-        for pair in words[2..].chunks_exact(2) {
-            columns.set(pair[0] as usize, k, f64::from_bits(pair[1]));
+    for (k, (_, _, entries)) in all.iter().enumerate() {
+        for &[c, v] in *entries {
+            columns.set(c as usize, k, f64::from_bits(v));
         }
     }
-    (columns, all.iter().map(|w| w[0] == 1).collect())
+    (columns, all.iter().map(|d| d.0 == 1).collect())
 }

@@ -12,12 +12,13 @@ use crate::feti::projector::balance::{Along, KernelLoad};
 use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
-use crate::feti::projector::motion::Motion;
+use crate::feti::projector::motion::{Coefficient, Motion};
 use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
-use parallel::exchange::gather_all;
+use bytemuck::{Pod, Zeroable};
+use parallel::parcels::Parcels;
 
 /// Work of a row on a motion below this, relative to the largest that it could be, is none.
 const AGAINST: f64 = 1e-8;
@@ -69,20 +70,35 @@ pub fn restore(
                 }
             }
         }
-        let words = best.iter().enumerate().filter_map(|(d, best)| {
-            let (score, i) = (*best)?;
-            let (columns, values) = g.entries(i);
-            let names = columns.iter().map(|&c| known.name(c));
-            let kind = jump.inequality[i];
-            Some(Offer::pack([d, i], score, kind, (names, values)))
-        });
-        let words: Vec<u64> = words.flatten().collect();
+        let mut mine = Parcels::default();
+        for (motion, best) in best.iter().enumerate() {
+            let Some((score, row)) = *best else {
+                continue;
+            };
+            let offered = Offered {
+                motion,
+                score,
+                row,
+                inequality: jump.inequality[row].into(),
+            };
+            let (columns, values) = g.entries(row);
+            let entries = columns.iter().zip(values);
+            let entries = entries.map(|(&c, &v)| Coefficient::new(known.name(c), v));
+            mine.push(offered, entries);
+        }
         let mut offers: Vec<Option<Offer>> = driven.iter().map(|_| None).collect();
-        for (rank, words) in gather_all(comm, &words).iter().enumerate() {
-            for offer in Offer::read(rank, words) {
-                let known = &mut offers[offer.motion];
-                if known.as_ref().is_none_or(|other| offer.score > other.score) {
-                    *known = Some(offer);
+        for (rank, list) in mine.gather_all(comm).iter().enumerate() {
+            for (offered, entries) in list.iter() {
+                let known = &mut offers[offered.motion];
+                let better = |other: &Offer| offered.score > other.offered.score;
+                if known.as_ref().is_none_or(better) {
+                    let (columns, values) = entries.iter().map(Coefficient::pair).unzip();
+                    *known = Some(Offer {
+                        offered,
+                        rank,
+                        columns,
+                        values,
+                    });
                 }
             }
         }
@@ -99,7 +115,10 @@ pub fn restore(
         }
         free.forget(&unopposed);
         let mut offers: Vec<Offer> = offers.into_iter().flatten().collect();
-        offers.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.motion.cmp(&b.motion)));
+        offers.sort_by(|a, b| {
+            let (a, b) = (&a.offered, &b.offered);
+            b.score.total_cmp(&a.score).then(a.motion.cmp(&b.motion))
+        });
         // Few motions: all rows are looked at again after each. Many would take as many passes.
         if natural.r <= FEW {
             offers.truncate(1);
@@ -109,7 +128,7 @@ pub fn restore(
             if free.hold(&natural.columns, &offer, &load_along) {
                 restored += 1;
                 if offer.rank == comm.rank() as usize {
-                    active[offer.row] = true;
+                    active[offer.offered.row] = true;
                 }
             }
         }
@@ -118,52 +137,23 @@ pub fn restore(
     Ok(restored)
 }
 
-/// A row that a rank offers to put back against a driven motion.
-struct Offer {
+/// A row that a rank offers to put back against a driven motion, by its number there.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Offered {
     motion: usize,
     score: f64,
-    rank: usize,
     row: usize,
-    inequality: bool,
+    inequality: usize,
+}
+
+/// The row, and the rank that offers it.
+struct Offer {
+    offered: Offered,
+    rank: usize,
     /// The names of its columns, and the values.
     columns: Vec<u32>,
     values: Vec<f64>,
-}
-
-impl Offer {
-    fn pack(
-        [motion, row]: [usize; 2],
-        score: f64,
-        inequality: bool,
-        (columns, values): (impl Iterator<Item = u32>, &[f64]),
-    ) -> Vec<u64> {
-        let kind = u64::from(inequality);
-        let mut words = vec![motion as u64, score.to_bits(), row as u64, kind];
-        words.push(values.len() as u64);
-        words.extend(columns.map(u64::from));
-        words.extend(values.iter().map(|v| v.to_bits()));
-        words
-    }
-
-    fn read(rank: usize, words: &[u64]) -> Vec<Offer> {
-        let mut out = Vec::new();
-        let mut rest = words;
-        while let [motion, score, row, kind, n, tail @ ..] = rest {
-            let (columns, tail) = tail.split_at(*n as usize);
-            let (values, tail) = tail.split_at(*n as usize);
-            out.push(Offer {
-                motion: *motion as usize,
-                score: f64::from_bits(*score),
-                rank,
-                row: *row as usize,
-                inequality: *kind == 1,
-                columns: columns.iter().map(|&c| c as u32).collect(),
-                values: values.iter().map(|&w| f64::from_bits(w)).collect(),
-            });
-            rest = tail;
-        }
-        out
-    }
 }
 
 /// A motion on which the load does work, with the sign for which it gains energy.
@@ -266,7 +256,7 @@ impl Free {
             relative.abs() > AGAINST
                 && self
                     .gain(m, load)
-                    .is_some_and(|gain| !row.inequality || gain * relative > 0.0)
+                    .is_some_and(|gain| row.offered.inequality == 0 || gain * relative > 0.0)
         });
         if !opposed {
             return false;

@@ -8,10 +8,10 @@ use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::union_find::UnionFind;
-use parallel::exchange::gather_all;
+use parallel::parcels::Parcels;
 
 /// A row a z ≤ b: a as (motion, coefficient as bits), scaled to a largest coefficient of 1.
-type Row = Vec<(u64, u64)>;
+type Row = Vec<[u64; 2]>;
 
 /// Work of a row on a motion below this, relative to the largest that it could be, is none.
 const AGAINST: f64 = 1e-8;
@@ -49,36 +49,29 @@ pub fn settle(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
         if largest > AGAINST * size {
             let rounded = a.iter().map(|&(m, x)| {
                 let x = (x / largest * 1e12).round() / 1e12 + 0.0;
-                (m as u64, x.to_bits())
+                [m as u64, x.to_bits()]
             });
-            let row = rounded.filter(|e| e.1 != 0).collect();
+            let row = rounded.filter(|e| e[1] != 0).collect();
             meet(&mut tightest, row, -gaps[i] / largest);
         }
     }
-    let mut words: Vec<u64> = Vec::new();
-    for (a, b) in &tightest {
-        words.extend([a.len() as u64, b.to_bits()]);
-        words.extend(a.iter().flat_map(|e| [e.0, e.1]));
+    let mut mine = Parcels::default();
+    for (a, &b) in &tightest {
+        mine.push(b, a.iter().copied());
     }
     let mut all: BTreeMap<Row, f64> = BTreeMap::new();
-    for words in gather_all(comm, &words) {
-        let mut rest = &words[..];
-        while let [n, b, tail @ ..] = rest {
-            let (a, tail) = tail.split_at(2 * *n as usize);
-            let row = a.chunks_exact(2).map(|e| (e[0], e[1])).collect();
-            meet(&mut all, row, f64::from_bits(*b));
-            rest = tail;
-        }
+    for (b, a) in mine.gather_all(comm).iter().flat_map(Parcels::iter) {
+        meet(&mut all, a.to_vec(), b);
     }
     // Motions that share a row are looked at together.
     let mut sets = UnionFind::new(motions.len());
     for a in all.keys() {
         a.iter()
-            .for_each(|e| sets.join(a[0].0 as usize, e.0 as usize));
+            .for_each(|e| sets.join(a[0][0] as usize, e[0] as usize));
     }
     let mut rows: BTreeMap<usize, Vec<(&Row, f64)>> = BTreeMap::new();
     for (a, &b) in &all {
-        let set = sets.find(a[0].0 as usize);
+        let set = sets.find(a[0][0] as usize);
         rows.entry(set).or_default().push((a, b));
     }
     let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -109,7 +102,7 @@ fn least(members: &[usize], rows: &[(&Row, f64)]) -> Option<Vec<f64>> {
     let scale = rows.iter().fold(0.0f64, |m, row| m.max(row.1.abs()));
     let mut e = Dense::zeros(n + 1, rows.len());
     for (k, (a, b)) in rows.iter().enumerate() {
-        for &(m, x) in a.iter() {
+        for &[m, x] in a.iter() {
             let j = members.binary_search(&(m as usize));
             e.set(j.expect("rows of this set"), k, -f64::from_bits(x));
         }
@@ -131,7 +124,7 @@ fn least_violation(members: &[usize], rows: &[(&Row, f64)]) -> Vec<f64> {
     let n = members.len();
     let of = |a: &Row| -> Vec<(usize, f64)> {
         let place = |m: u64| members.binary_search(&(m as usize));
-        let entries = a.iter().map(|&(m, x)| (place(m), f64::from_bits(x)));
+        let entries = a.iter().map(|&[m, x]| (place(m), f64::from_bits(x)));
         entries
             .map(|(j, x)| (j.expect("rows of this set"), x))
             .collect()

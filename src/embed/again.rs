@@ -192,10 +192,9 @@ impl Embedded {
         let now = subjects(given, self.frame.block_size).into_iter();
         let now = now.map(|s| known.get(&s).copied().unwrap_or((0.0, true)));
         let now: Vec<(f64, bool)> = now.collect();
-        let words = now.iter().map(|(m, h)| [m.to_bits(), u64::from(*h)]);
-        let words: Vec<[u64; 2]> = words.collect();
-        let taken = contact.forth(&self.session, &words);
-        rows.extend(taken.iter().map(|w| (f64::from_bits(w[0]), w[1] == 1)));
+        let mine = now.iter().map(|&(m, holds)| [m, f64::from(holds)]);
+        let taken = contact.forth(&self.session, &mine.collect::<Vec<_>>());
+        rows.extend(taken.iter().map(|&[m, holds]| (m, holds != 0.0)));
         Start {
             inside,
             rows,

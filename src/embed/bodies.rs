@@ -7,7 +7,7 @@ use super::sharing::Sharers;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
-use parallel::exchange::{any, exchange_words, offsets};
+use parallel::exchange::{any, exchange, exchange_by_rank, offsets};
 use parallel::halo::Halo;
 use petsc::{Session, Vec as PetscVec};
 use std::cmp::Reverse;
@@ -86,7 +86,7 @@ pub struct Bodies {
     /// The body of each of this rank's subdomains.
     pub mine: Vec<usize>,
     /// The bodies of this rank's subdomains and of their neighbours, by subdomain.
-    around: HashMap<u32, u64>,
+    around: HashMap<u32, usize>,
 }
 
 impl Bodies {
@@ -102,31 +102,31 @@ impl Bodies {
         let wanted = distinct(lowest.iter().copied());
         let mut outgoing = vec![Vec::new(); session.size()];
         for &low in &wanted {
-            outgoing[sharers.owners.of(low)].push(u64::from(low));
+            outgoing[sharers.owners.of(low)].push(low);
         }
-        let number = |word: &u64| {
-            let place = own.binary_search(&(*word as u32));
-            (before + place.expect("it is the lowest of a body")) as u64
+        let number = |low: &u32| {
+            let place = own.binary_search(low);
+            before + place.expect("it is the lowest of a body")
         };
-        let asked = exchange_words(comm, outgoing);
-        let replies = asked.iter().map(|words| words.iter().map(number).collect());
+        let asked = exchange_by_rank(comm, outgoing);
+        let replies = asked.iter().map(|list| list.iter().map(number).collect());
         // Higher ranks have higher subdomains.
-        let numbers = exchange_words(comm, replies.collect()).concat();
+        let numbers = exchange(comm, replies.collect());
         let body = |low: &u32| {
             let place = wanted.binary_search(low);
             numbers[place.expect("it was asked for")]
         };
-        let mine: Vec<u64> = lowest.iter().map(body).collect();
+        let mine: Vec<usize> = lowest.iter().map(body).collect();
         Bodies {
             n,
             around: sharers.around(session, &mine),
-            mine: mine.iter().map(|&b| b as usize).collect(),
+            mine,
         }
     }
 
     /// The body of a subdomain of this rank, or of a neighbour of one.
     pub fn of(&self, subdomain: u32) -> usize {
-        self.around[&subdomain] as usize
+        self.around[&subdomain]
     }
 }
 
@@ -143,7 +143,7 @@ fn lowest_of_bodies(
     let mut sets = UnionFind::new(group.len());
     // Subdomains of this rank, by their place, that a bond joins to one of another rank.
     let mut links: Vec<(usize, u32)> = Vec::new();
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    let mut outgoing = vec![Vec::new(); session.size()];
     for bond in bonds.iter().filter(|b| b.holds) {
         let [low, high] = [bond.low as u32, bond.high as u32];
         if groups[&low] != groups[&high] {
@@ -153,35 +153,31 @@ fn lowest_of_bodies(
             sets.join(bond.low - first, bond.high - first);
         } else {
             links.push((bond.low - first, high));
-            outgoing[sharers.owners.of(high)].push(u64::from(high) << 32 | u64::from(low));
+            outgoing[sharers.owners.of(high)].push([high, low]);
         }
     }
-    let received = exchange_words(comm, outgoing).concat();
-    links.extend(
-        received
-            .iter()
-            .map(|w| ((w >> 32) as usize - first, *w as u32)),
-    );
+    let received = exchange(comm, outgoing).into_iter();
+    links.extend(received.map(|[own, other]| (own as usize - first, other)));
     // By set: a representative is the lowest of its set on this rank.
     let mut lowest: Vec<u32> = (first as u32..).take(group.len()).collect();
     let mut told = vec![u32::MAX; links.len()];
     loop {
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        let mut outgoing = vec![Vec::new(); session.size()];
         let mut news = false;
         for (&(j, other), told) in links.iter().zip(&mut told) {
             let low = lowest[sets.find(j)];
             if low < *told {
                 (*told, news) = (low, true);
-                outgoing[sharers.owners.of(other)].push(u64::from(other) << 32 | u64::from(low));
+                outgoing[sharers.owners.of(other)].push([other, low]);
             }
         }
         if !any(comm, news) {
             let lowest = |j| lowest[sets.find(j)];
             return (0..group.len()).map(lowest).collect();
         }
-        for word in exchange_words(comm, outgoing).concat() {
-            let set = sets.find((word >> 32) as usize - first);
-            lowest[set] = lowest[set].min(word as u32);
+        for [own, low] in exchange(comm, outgoing) {
+            let set = sets.find(own as usize - first);
+            lowest[set] = lowest[set].min(low);
         }
     }
 }

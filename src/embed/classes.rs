@@ -11,7 +11,7 @@ use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::substructures::EntityKind;
 use mpi::traits::Communicator;
-use parallel::exchange::{any, exchange_words};
+use parallel::exchange::{any, exchange_by_rank};
 use petsc::Session;
 
 /// A connected piece of interface, as one of its subdomains sees it.
@@ -52,34 +52,31 @@ pub fn classes(
     let size = comm.size() as usize;
     // Local candidates: lists of (rank that merges the sides, dofs of a locally connected piece).
     let mut guesses: Vec<Vec<(usize, Vec<u32>)>> = Vec::new();
-    let mut asked: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut asked: Vec<Vec<[u32; 2]>> = vec![Vec::new(); size];
     for part in parts {
         let mut mine = Vec::new();
         for dofs in connected(torn, part, sharers) {
             let mut state = DefaultHasher::new();
             sharers.of(part.dofs[dofs[0] as usize]).hash(&mut state);
             let home = state.finish() as usize % size;
-            let root = u64::from(part.dofs[dofs[0] as usize]);
+            let root = part.dofs[dofs[0] as usize];
             for &i in &dofs {
-                asked[home].push(u64::from(part.dofs[i as usize]) << 32 | root);
+                asked[home].push([part.dofs[i as usize], root]);
             }
             mine.push((home, dofs));
         }
         guesses.push(mine);
     }
-    let received = exchange_words(comm, asked);
+    let received = exchange_by_rank(comm, asked);
     let mut above: HashMap<u32, u32> = HashMap::new();
-    for word in received.iter().flatten() {
-        join(&mut above, (word >> 32) as u32, *word as u32);
+    for &[dof, root] in received.iter().flatten() {
+        join(&mut above, dof, root);
     }
     let replies = received
         .iter()
-        .map(|words| {
-            let root = |w: &u64| u64::from(find(&mut above, (w >> 32) as u32));
-            words.iter().map(root).collect()
-        })
+        .map(|list| list.iter().map(|w| find(&mut above, w[0])).collect())
         .collect();
-    let answers: Vec<Vec<u64>> = exchange_words(comm, replies);
+    let answers: Vec<Vec<u32>> = exchange_by_rank(comm, replies);
 
     let mut next = vec![0; size];
     let mut out = Vec::new();
@@ -87,7 +84,7 @@ pub fn classes(
         let mut found: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (home, dofs) in mine {
             for i in dofs {
-                let root = answers[home][next[home]] as u32;
+                let root = answers[home][next[home]];
                 next[home] += 1;
                 found.entry(root).or_default().push(i);
             }

@@ -11,7 +11,9 @@ use super::torn::GivenRow;
 use super::touched::{Here, Touched};
 use crate::substructures::{Row, RowKind};
 use crate::{Error, Result};
-use parallel::exchange::{any, exchange_words, total};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::{any, exchange, exchange_by_rank, total};
+use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// A row on the rank that takes it.
@@ -22,6 +24,14 @@ struct Taken {
     row: Row,
     /// (place in the list of known dofs, coefficient) of its terms at known dofs.
     known: Vec<(usize, f64)>,
+}
+
+/// A number about a row, by the number of the row on the rank that gave it.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct RowValue {
+    row: usize,
+    value: f64,
 }
 
 /// The host's rows, distributed over the ranks.
@@ -66,13 +76,13 @@ impl Contact {
         let placed: Vec<Option<Placed>> = session.agree(placed.collect())?;
         let home = |row: &Placed| row.block as usize % session.size();
         let homes = placed.iter().map(|p| p.as_ref().map(home)).collect();
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        let mut outgoing = Parcels::for_each_rank(comm);
         for row in placed.iter().flatten() {
-            row.pack(&mut outgoing[home(row)]);
+            row.give(&mut outgoing[home(row)]);
         }
         let mut rows: Vec<(usize, Placed)> = Vec::new();
-        for (rank, words) in exchange_words(comm, outgoing).iter().enumerate() {
-            rows.extend(Placed::unpack(words).into_iter().map(|row| (rank, row)));
+        for (rank, sent) in exchange_by_rank(comm, outgoing).iter().enumerate() {
+            rows.extend(sent.iter().map(|row| (rank, Placed::received(row))));
         }
         let terms = || rows.iter().flat_map(|(_, row)| row.known());
         let known = any(comm, terms().next().is_some());
@@ -120,45 +130,37 @@ impl Contact {
         self.taken.iter().map(gap).collect()
     }
 
-    /// Passes what this rank knows of the rows that it gave, two words for each, to the ranks that take them; returned
-    /// is what is known of each row that this rank takes. Collective.
-    pub fn forth(&self, session: &Session, mine: &[[u64; 2]]) -> Vec<[u64; 2]> {
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-        for (r, (home, words)) in self.homes.iter().zip(mine).enumerate() {
+    /// Passes what this rank knows of each row that it gave to the ranks that take them; returned is what is known of
+    /// each row that this rank takes. Collective.
+    pub fn forth<T: Pod>(&self, session: &Session, mine: &[T]) -> Vec<T> {
+        let mut outgoing = vec![Vec::new(); session.size()];
+        for (home, value) in self.homes.iter().zip(mine) {
             if let Some(home) = home {
-                outgoing[*home].extend([r as u64, words[0], words[1]]);
+                outgoing[*home].push(*value);
             }
         }
-        let mut known = HashMap::new();
-        let received = exchange_words(session.comm(), outgoing);
-        for (rank, words) in received.iter().enumerate() {
-            let triples = words.chunks_exact(3);
-            known.extend(triples.map(|w| ((rank, w[0] as usize), [w[1], w[2]])));
-        }
-        self.taken.iter().map(|t| known[&t.from]).collect()
+        // Rows are taken in the order of the ranks that gave them, and of their numbers there.
+        exchange(session.comm(), outgoing)
     }
 
     /// Replaces the right-hand sides; `mine` has those of the rows that this rank gave. Collective.
     pub fn set_gaps(&mut self, session: &Session, mine: &[f64]) {
-        let words: Vec<[u64; 2]> = mine.iter().map(|g| [g.to_bits(), 0]).collect();
-        let new = self.forth(session, &words);
-        for (taken, words) in self.taken.iter_mut().zip(new) {
-            taken.row.gap = f64::from_bits(words[0]);
+        let new = self.forth(session, mine);
+        for (taken, gap) in self.taken.iter_mut().zip(new) {
+            taken.row.gap = gap;
         }
     }
 
     /// Returns one number per row, `mine`, to the ranks that gave the rows; zero for rows without unknowns. Collective.
     pub fn back(&self, session: &Session, mine: impl Iterator<Item = f64>) -> Vec<f64> {
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-        for (t, v) in self.taken.iter().zip(mine) {
-            outgoing[t.from.0].extend([t.from.1 as u64, v.to_bits()]);
+        let mut outgoing: Vec<Vec<RowValue>> = vec![Vec::new(); session.size()];
+        for (t, value) in self.taken.iter().zip(mine) {
+            let (rank, row) = t.from;
+            outgoing[rank].push(RowValue { row, value });
         }
         let mut out = vec![0.0; self.homes.len()];
-        for w in exchange_words(session.comm(), outgoing)
-            .concat()
-            .chunks_exact(2)
-        {
-            out[w[0] as usize] = f64::from_bits(w[1]);
+        for RowValue { row, value } in exchange(session.comm(), outgoing) {
+            out[row] = value;
         }
         out
     }

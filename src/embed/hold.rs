@@ -16,7 +16,7 @@ use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::Primal;
 use crate::substructures::EntityKind;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange;
 use petsc::Session;
 
 /// Two subdomains that have dofs in common.
@@ -145,10 +145,10 @@ impl Motions {
         }
         let mut outgoing = vec![Vec::new(); session.size()];
         for &(low, high) in &averaged {
-            outgoing[sharers.owners.of(high)].push(u64::from(low) << 32 | u64::from(high));
+            outgoing[sharers.owners.of(high)].push([low, high]);
         }
-        let received = exchange_words(session.comm(), outgoing).concat();
-        averaged.extend(received.iter().map(|w| ((w >> 32) as u32, *w as u32)));
+        let received = exchange(session.comm(), outgoing);
+        averaged.extend(received.into_iter().map(|[low, high]| (low, high)));
         (averaged, nodes)
     }
 }

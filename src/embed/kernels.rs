@@ -2,8 +2,9 @@
 
 use super::parts::Part;
 use crate::Result;
-use parallel::exchange::{exchange_words, highest};
+use parallel::exchange::{exchange_by_rank, highest};
 use parallel::halo::Halo;
+use parallel::parcels::Parcels;
 use petsc::{Session, Vec as PetscVec};
 use std::collections::HashMap;
 
@@ -76,7 +77,7 @@ pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [Columns]
     let k = columns.iter().map(Vec::len).max().unwrap_or(0);
     let k = highest(session.comm(), k as f64) as usize;
     let (size, width) = (session.size(), k * k + 1);
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut outgoing = Parcels::for_each_rank(session.comm());
     for (&body, list) in body_of.iter().zip(columns.iter()) {
         let mut gram = vec![0.0; width];
         for (a, x) in list.iter().enumerate() {
@@ -85,31 +86,25 @@ pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [Columns]
             }
         }
         gram[k * k] = list.first().map_or(0.0, |x| x.len() as f64);
-        let words = &mut outgoing[body % size];
-        words.push(body as u64);
-        words.extend(gram.iter().map(|x| x.to_bits()));
+        outgoing[body % size].push(body, gram);
     }
-    let received = exchange_words(session.comm(), outgoing);
-    let mut sums: HashMap<u64, Vec<f64>> = HashMap::new();
-    for record in received.iter().flat_map(|w| w.chunks_exact(1 + width)) {
-        let sum = sums.entry(record[0]).or_insert_with(|| vec![0.0; width]);
-        let terms = sum.iter_mut().zip(&record[1..]);
-        terms.for_each(|(s, x)| *s += f64::from_bits(*x));
+    let received = exchange_by_rank(session.comm(), outgoing);
+    let mut sums: HashMap<usize, Vec<f64>> = HashMap::new();
+    for (body, gram) in received.iter().flat_map(Parcels::iter) {
+        let sum = sums.entry(body).or_insert_with(|| vec![0.0; width]);
+        sum.iter_mut().zip(gram).for_each(|(s, x)| *s += x);
     }
-    let reply = |words: &Vec<u64>| -> Vec<u64> {
-        let bodies = words
-            .chunks_exact(1 + width)
-            .map(|record| &sums[&record[0]]);
-        bodies.flatten().map(|x| x.to_bits()).collect()
+    let reply = |list: &Parcels<usize, f64>| -> Vec<f64> {
+        let of_bodies = list.iter().flat_map(|(body, _)| &sums[&body]);
+        of_bodies.copied().collect()
     };
-    let answers = exchange_words(session.comm(), received.iter().map(reply).collect());
+    let answers = exchange_by_rank(session.comm(), received.iter().map(reply).collect());
     let mut next = vec![0; size];
     for (&body, list) in body_of.iter().zip(columns) {
         let at = &mut next[body % size];
-        let words = &answers[body % size][*at..*at + width];
+        let gram = &answers[body % size][*at..*at + width];
         *at += width;
-        let gram: Vec<f64> = words.iter().map(|&w| f64::from_bits(w)).collect();
-        *list = combined(list, &combinations(&gram, k), gram[k * k]);
+        *list = combined(list, &combinations(gram, k), gram[k * k]);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use base::linalg::sorted::distinct;
-use parallel::exchange::exchange_words;
+use parallel::exchange::{exchange, exchange_by_rank};
 use petsc::Session;
 
 /// The known dofs in the rows that this rank takes.
@@ -20,13 +20,11 @@ impl KnownDofs {
         let wanted = distinct(wanted);
         let mut outgoing = vec![Vec::new(); session.size()];
         for &(rank, dof) in &wanted {
-            outgoing[rank].push(u64::from(dof));
+            outgoing[rank].push(dof);
         }
-        let asked = exchange_words(session.comm(), outgoing);
-        let dofs = |words: Vec<u64>| words.iter().map(|&w| w as u32).collect();
         KnownDofs {
             wanted,
-            given: asked.into_iter().map(dofs).collect(),
+            given: exchange_by_rank(session.comm(), outgoing),
         }
     }
 
@@ -38,10 +36,7 @@ impl KnownDofs {
 
     /// The values; `here` has those of this rank's known dofs. Collective.
     pub fn fetch(&self, session: &Session, here: &HashMap<u32, f64>) -> Vec<f64> {
-        let value = |dof: &u32| here[dof].to_bits();
-        let values = |dofs: &Vec<u32>| dofs.iter().map(value).collect();
-        let outgoing = self.given.iter().map(values).collect();
-        let words = exchange_words(session.comm(), outgoing).concat();
-        words.into_iter().map(f64::from_bits).collect()
+        let values = |dofs: &Vec<u32>| dofs.iter().map(|dof| here[dof]).collect();
+        exchange(session.comm(), self.given.iter().map(values).collect())
     }
 }

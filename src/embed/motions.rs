@@ -17,7 +17,8 @@ use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::{Error, Result};
-use parallel::exchange::{any, exchange_words};
+use parallel::exchange::{any, exchange_by_rank};
+use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// A row annihilates a vector of the host if its terms cancel to less than this fraction: vectors have errors of their
@@ -91,15 +92,14 @@ impl Motions {
         let own = any(session.comm(), useless);
         let bases = if own { found } else { known };
         let facts = bases.iter().zip(beyond);
-        let facts =
-            facts.map(|(basis, beyond)| (basis.len() as u64) << 1 | u64::from(beyond && !own));
-        let around = sharers.around(session, &facts.collect::<Vec<u64>>());
-        let of_word = |(s, w): (u32, u64)| (s, ((w >> 1) as usize, w & 1 == 1));
+        let facts = facts.map(|(basis, beyond)| [basis.len(), usize::from(beyond && !own)]);
+        let around = sharers.around(session, &facts.collect::<Vec<_>>());
+        let of = |(s, [n, beyond]): (u32, [usize; 2])| (s, (n, beyond != 0));
         let pairs = own.then(|| pairs(session, sharers, &bases));
         let motions = Motions {
             bases,
             components: torn.block_size,
-            around: around.into_iter().map(of_word).collect(),
+            around: around.into_iter().map(of).collect(),
             pairs,
         };
         Ok((motions, modes.filter(|_| !own)))
@@ -161,28 +161,21 @@ fn norm(x: &[f64]) -> f64 {
 /// Collective.
 fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap<u32, Columns>> {
     // Both sides list the shared dofs by increasing global number. The higher one sends its motions, column by column.
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    let mut outgoing = Parcels::for_each_rank(session.comm());
     for (j, basis) in bases.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for (low, dofs) in sharers.neighbours[j].iter().filter(|n| n.0 < me) {
-            let words = &mut outgoing[sharers.owners.of(*low)];
-            let columns = basis.len() as u64;
-            words.extend([u64::from(*low), u64::from(me), columns, dofs.len() as u64]);
-            for x in basis {
-                words.extend(dofs.iter().map(|&i| x[i as usize].to_bits()));
-            }
+            let on =
+                |x: &'_ Vec<f64>| -> Vec<f64> { dofs.iter().map(|&i| x[i as usize]).collect() };
+            let entries = basis.iter().flat_map(on);
+            outgoing[sharers.owners.of(*low)].push([*low, me, dofs.len() as u32], entries);
         }
     }
     let mut theirs: HashMap<(u32, u32), Columns> = HashMap::new();
-    for words in exchange_words(session.comm(), outgoing) {
-        let mut rest = &words[..];
-        while let [low, high, columns, n, tail @ ..] = rest {
-            let (data, tail) = tail.split_at((columns * n) as usize);
-            let column = |c: &[u64]| c.iter().map(|&w| f64::from_bits(w)).collect();
-            let columns = data.chunks_exact((*n).max(1) as usize).map(column);
-            theirs.insert((*low as u32, *high as u32), columns.collect());
-            rest = tail;
-        }
+    let received = exchange_by_rank(session.comm(), outgoing);
+    for ([low, high, n], entries) in received.iter().flat_map(Parcels::iter) {
+        let columns = entries.chunks_exact(n.max(1) as usize);
+        theirs.insert((low, high), columns.map(<[f64]>::to_vec).collect());
     }
     let of_part = |(j, basis): (usize, &Columns)| {
         let me = (sharers.first + j) as u32;

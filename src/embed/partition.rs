@@ -68,18 +68,16 @@ pub fn partition(
 
 /// The bonds of all ranks, on all of them. Collective.
 fn everywhere(session: &Session, mine: &[Bond]) -> Vec<Bond> {
-    let words = mine.iter().flat_map(|b| {
-        let holds = u64::from(b.holds);
-        [b.low as u64, b.high as u64, (b.shared as u64) << 1 | holds]
-    });
-    let words = gather_all(session.comm(), &words.collect::<Vec<u64>>()).concat();
-    let bond = |w: &[u64]| Bond {
-        low: w[0] as usize,
-        high: w[1] as usize,
-        shared: (w[2] >> 1) as usize,
-        holds: w[2] & 1 == 1,
+    let mine = mine.iter();
+    let mine = mine.map(|b| [b.low, b.high, b.shared, b.holds.into()]);
+    let all = gather_all(session.comm(), &mine.collect::<Vec<_>>()).concat();
+    let bond = |[low, high, shared, holds]: [usize; 4]| Bond {
+        low,
+        high,
+        shared,
+        holds: holds != 0,
     };
-    words.chunks_exact(3).map(bond).collect()
+    all.into_iter().map(bond).collect()
 }
 
 /// The body of every subdomain if these are the groups, numbered from 0 by lowest subdomain: a group that is not

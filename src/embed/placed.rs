@@ -4,6 +4,8 @@ use super::parts::body_dof;
 use super::torn::GivenRow;
 use super::touched::{Holder, Touched};
 use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
+use bytemuck::{Pod, Zeroable};
+use parallel::parcels::Parcels;
 use std::collections::BTreeMap;
 
 /// A row with at least one unknown.
@@ -18,10 +20,29 @@ pub struct Placed {
 }
 
 /// A term of a row; the dofs of a row differ.
-struct Term {
-    dof: u32,
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct Term {
+    dof: u64,
     coefficient: f64,
-    holder: Holder,
+    /// The [`code`](Holder::code) of the holder.
+    holder: [u64; 2],
+}
+
+/// A row on its way, without its terms.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+pub struct SentRow {
+    number: usize,
+    gap: f64,
+    inequality: u32,
+    block: u32,
+}
+
+impl Term {
+    fn holder(&self) -> Holder {
+        Holder::of_code(self.holder)
+    }
 }
 
 impl Placed {
@@ -44,9 +65,9 @@ impl Placed {
                 Holder::Known(_) => {}
             }
             terms.push(Term {
-                dof,
+                dof: dof.into(),
                 coefficient,
-                holder,
+                holder: holder.code(),
             });
         }
         Ok(block.map(|block| Placed {
@@ -58,55 +79,43 @@ impl Placed {
         }))
     }
 
-    /// Appends the row as words.
-    pub fn pack(&self, out: &mut Vec<u64>) {
-        let kind = u64::from(self.kind == RowKind::Inequality);
-        let (gap, n) = (self.gap.to_bits(), self.terms.len());
-        out.extend([self.number as u64, kind, gap, self.block.into(), n as u64]);
-        for term in &self.terms {
-            let [kind, number] = term.holder.words();
-            out.extend([term.dof.into(), term.coefficient.to_bits(), kind, number]);
-        }
+    /// Adds the row to those that are sent.
+    pub fn give(&self, to: &mut Parcels<SentRow, Term>) {
+        let row = SentRow {
+            number: self.number,
+            gap: self.gap,
+            inequality: u32::from(self.kind == RowKind::Inequality),
+            block: self.block,
+        };
+        to.push(row, self.terms.iter().copied());
     }
 
-    /// The rows that one rank sent.
-    pub fn unpack(words: &[u64]) -> Vec<Placed> {
-        let term = |w: &[u64]| Term {
-            dof: w[0] as u32,
-            coefficient: f64::from_bits(w[1]),
-            holder: Holder::of_words(&w[2..]),
-        };
-        let mut out = Vec::new();
-        let mut rest = words;
-        while let [number, kind, gap, block, n, tail @ ..] = rest {
-            let (terms, tail) = tail.split_at(4 * *n as usize);
-            out.push(Placed {
-                number: *number as usize,
-                kind: match kind {
-                    0 => RowKind::Equality,
-                    _ => RowKind::Inequality,
-                },
-                gap: f64::from_bits(*gap),
-                block: *block as u32,
-                terms: terms.chunks_exact(4).map(term).collect(),
-            });
-            rest = tail;
+    /// The row that another rank has sent.
+    pub fn received((row, terms): (SentRow, &[Term])) -> Placed {
+        Placed {
+            number: row.number,
+            kind: match row.inequality {
+                0 => RowKind::Equality,
+                _ => RowKind::Inequality,
+            },
+            gap: row.gap,
+            block: row.block,
+            terms: terms.to_vec(),
         }
-        out
     }
 
     /// The terms at known dofs: the rank that has the value, the dof and the coefficient.
     pub fn known(&self) -> impl Iterator<Item = (usize, u32, f64)> + '_ {
-        self.terms.iter().filter_map(|t| match t.holder {
-            Holder::Known(rank) => Some((rank, t.dof, t.coefficient)),
+        self.terms.iter().filter_map(|t| match t.holder() {
+            Holder::Known(rank) => Some((rank, t.dof as u32, t.coefficient)),
             _ => None,
         })
     }
 
     /// The terms at unknowns: the body, the dof and the coefficient.
     fn unknown(&self) -> impl Iterator<Item = (u64, u32, f64)> + Clone + '_ {
-        self.terms.iter().filter_map(|t| match t.holder {
-            Holder::Body(body) => Some((body, t.dof, t.coefficient)),
+        self.terms.iter().filter_map(|t| match t.holder() {
+            Holder::Body(body) => Some((body, t.dof as u32, t.coefficient)),
             _ => None,
         })
     }

@@ -6,7 +6,7 @@ use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
 use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
 use base::linalg::sorted::distinct;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange;
 use petsc::Session;
 
 /// The rows u_a − u_b = 0 for every pair of bodies a < b at every dof. The rank of the dof's lowest subdomain provides
@@ -19,7 +19,7 @@ pub fn rows(
     bodies: &Bodies,
     contact: &Contact,
 ) -> Vec<Row> {
-    let tie = |a: u64, b: u64, dof: u32| Row {
+    let tie = |a: u32, b: u32, dof: u32| Row {
         terms: vec![
             (body_dof(n_global, a as usize, dof), 1.0),
             (body_dof(n_global, b as usize, dof), -1.0),
@@ -40,7 +40,7 @@ pub fn rows(
         ),
     };
     let mut out = Vec::new();
-    let mut elsewhere: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    let mut elsewhere: Vec<Vec<[u32; 3]>> = vec![Vec::new(); session.size()];
     for (j, part) in parts.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for &dof in &part.dofs {
@@ -48,13 +48,13 @@ pub fn rows(
             if who.first() != Some(&me) {
                 continue;
             }
-            let here = distinct(who.iter().map(|&s| bodies.of(s) as u64));
+            let here = distinct(who.iter().map(|&s| bodies.of(s) as u32));
             for (k, &a) in here.iter().enumerate() {
                 for &b in &here[k + 1..] {
                     match contact.block(dof) {
                         None => out.push(tie(a, b, dof)),
                         Some(root) => {
-                            elsewhere[root as usize % session.size()].extend([a, b, dof.into()])
+                            elsewhere[root as usize % session.size()].push([a, b, dof]);
                         }
                     }
                 }
@@ -62,9 +62,8 @@ pub fn rows(
         }
     }
     if contact.n_global > 0 {
-        let received = exchange_words(session.comm(), elsewhere).concat();
-        let words = received.chunks_exact(3);
-        out.extend(words.map(|w| tie(w[0], w[1], w[2] as u32)));
+        let received = exchange(session.comm(), elsewhere).into_iter();
+        out.extend(received.map(|[a, b, dof]| tie(a, b, dof)));
     }
     out
 }

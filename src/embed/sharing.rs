@@ -4,9 +4,11 @@ use std::collections::HashMap;
 
 use super::parts::Part;
 use base::linalg::sorted::distinct;
+use bytemuck::{Pod, Zeroable};
 use mpi::traits::Communicator;
-use parallel::exchange::{exchange_words, offsets};
+use parallel::exchange::{exchange_by_rank, offsets};
 use parallel::owners::Owners;
+use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// The subdomains of all ranks, and for each dof of this rank the subdomains that hold it.
@@ -23,48 +25,49 @@ pub struct Sharers {
     pub owners: Owners,
 }
 
+/// A dof, and a subdomain that holds it.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Pod, Zeroable)]
+struct DofHolder {
+    dof: u32,
+    subdomain: u32,
+}
+
 impl Sharers {
     /// Finds the shared dofs. Collective.
     pub fn new(session: &Session, parts: &[Part]) -> Sharers {
         let comm = session.comm();
         let size = comm.size() as usize;
         let (first, n_subdomains) = offsets(comm, parts.len());
-        let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+        let mut reports: Vec<Vec<DofHolder>> = vec![Vec::new(); size];
         for (j, part) in parts.iter().enumerate() {
+            let subdomain = (first + j) as u32;
             for &dof in &part.dofs {
-                let word = u64::from(dof) << 32 | (first + j) as u64;
-                reports[dof as usize % size].push(word);
+                reports[dof as usize % size].push(DofHolder { dof, subdomain });
             }
         }
-        let received = exchange_words(comm, reports);
-        let mut all: Vec<(u64, u32)> = Vec::new();
-        for (rank, words) in received.iter().enumerate() {
-            all.extend(words.iter().map(|&w| (w, rank as u32)));
+        let received = exchange_by_rank(comm, reports);
+        let mut all: Vec<(DofHolder, usize)> = Vec::new();
+        for (rank, list) in received.into_iter().enumerate() {
+            all.extend(list.into_iter().map(|holder| (holder, rank)));
         }
         all.sort_unstable();
-        // Every rank that holds a shared dof gets [dof, count, subdomains…] once.
-        let mut replies: Vec<Vec<u64>> = vec![Vec::new(); size];
-        for group in all.chunk_by(|a, b| a.0 >> 32 == b.0 >> 32) {
+        // Every rank that holds a shared dof gets the subdomains that hold it once.
+        let mut replies = Parcels::for_each_rank(comm);
+        for group in all.chunk_by(|a, b| a.0.dof == b.0.dof) {
             if group.len() < 2 {
                 continue;
             }
-            let mut ranks: Vec<u32> = group.iter().map(|g| g.1).collect();
+            let mut ranks: Vec<usize> = group.iter().map(|g| g.1).collect();
             ranks.dedup();
-            for &r in &ranks {
-                let list = &mut replies[r as usize];
-                list.extend([group[0].0 >> 32, group.len() as u64]);
-                list.extend(group.iter().map(|g| g.0 & u64::from(u32::MAX)));
+            for rank in ranks {
+                let subdomains = group.iter().map(|g| g.0.subdomain);
+                replies[rank].push(group[0].0.dof, subdomains);
             }
         }
-        let mut of = HashMap::new();
-        for words in exchange_words(comm, replies) {
-            let mut rest = &words[..];
-            while let [dof, n, tail @ ..] = rest {
-                let (list, tail) = tail.split_at(*n as usize);
-                of.insert(*dof as u32, list.iter().map(|&s| s as u32).collect());
-                rest = tail;
-            }
-        }
+        let received = exchange_by_rank(comm, replies);
+        let shared = received.iter().flat_map(Parcels::iter);
+        let of = shared.map(|(dof, list)| (dof, list.to_vec())).collect();
         let mut sharers = Sharers {
             first,
             n_subdomains,
@@ -83,19 +86,18 @@ impl Sharers {
         self.of.get(&dof).map_or(&[], |list| &list[..])
     }
 
-    /// A word of every subdomain of this rank and of their neighbours; `mine` has those of this rank. Collective.
-    pub fn around(&self, session: &Session, mine: &[u64]) -> HashMap<u32, u64> {
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-        for (j, (list, &word)) in self.neighbours.iter().zip(mine).enumerate() {
+    /// A value of every subdomain of this rank and of their neighbours; `mine` has those of this rank. Collective.
+    pub fn around<T: Pod>(&self, session: &Session, mine: &[T]) -> HashMap<u32, T> {
+        let mut outgoing = Parcels::for_each_rank(session.comm());
+        let own = (self.first as u32..).zip(mine.iter().copied());
+        for (list, (s, value)) in self.neighbours.iter().zip(own.clone()) {
             for rank in distinct(list.iter().map(|n| self.owners.of(n.0))) {
-                outgoing[rank].extend([(self.first + j) as u64, word]);
+                outgoing[rank].push(s, [value]);
             }
         }
-        let received = exchange_words(session.comm(), outgoing).concat();
-        let theirs = received.chunks_exact(2).map(|w| (w[0] as u32, w[1]));
-        (self.first as u32..)
-            .zip(mine.iter().copied())
-            .chain(theirs)
+        let received = exchange_by_rank(session.comm(), outgoing);
+        let theirs = received.iter().flat_map(Parcels::iter);
+        own.chain(theirs.map(|(s, values)| (s, values[0])))
             .collect()
     }
 

@@ -6,8 +6,9 @@
 use std::collections::HashMap;
 
 use super::torn::Torn;
+use bytemuck::{Pod, Zeroable};
 use mpi::traits::Communicator;
-use parallel::exchange::exchange_words;
+use parallel::exchange::{exchange, exchange_by_rank};
 use petsc::Session;
 
 /// The state of a global dof.
@@ -33,47 +34,47 @@ impl State {
     }
 }
 
+/// A dof: whether a row of its own couples it to others, and the diagonal entry.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct DofState {
+    dof: u32,
+    full: u32,
+    diagonal: f64,
+}
+
 /// The state of every dof that this rank's pieces touch. Collective.
 pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
     let comm = session.comm();
     let size = comm.size() as usize;
-    let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut reports: Vec<Vec<DofState>> = vec![Vec::new(); size];
     for piece in &torn.pieces {
         for (i, &dof) in piece.dofs.iter().enumerate() {
-            let full = piece.couples(i) && !torn.held.contains(&dof);
-            let word = u64::from(dof) << 1 | u64::from(full);
-            reports[dof as usize % size].extend([word, piece.k.get(i, i).to_bits()]);
+            reports[dof as usize % size].push(DofState {
+                dof,
+                full: (piece.couples(i) && !torn.held.contains(&dof)).into(),
+                diagonal: piece.k.get(i, i),
+            });
         }
     }
-    let received = exchange_words(comm, reports);
-    let mut known: HashMap<u64, (bool, f64)> = HashMap::new();
-    for pair in received.iter().flat_map(|w| w.chunks_exact(2)) {
-        let entry = known.entry(pair[0] >> 1).or_default();
-        entry.0 |= pair[0] & 1 == 1;
-        entry.1 += f64::from_bits(pair[1]);
+    let received = exchange_by_rank(comm, reports);
+    let mut known: HashMap<u32, DofState> = HashMap::new();
+    for part in received.iter().flatten() {
+        let sum = known.entry(part.dof).or_insert(DofState {
+            dof: part.dof,
+            ..DofState::zeroed()
+        });
+        sum.full |= part.full;
+        sum.diagonal += part.diagonal;
     }
+    let answer = |part: &DofState| known[&part.dof];
     let replies = received
         .iter()
-        .map(|words| {
-            let answer = |pair: &[u64]| {
-                let (full, diagonal) = known[&(pair[0] >> 1)];
-                [pair[0] & !1 | u64::from(full), diagonal.to_bits()]
-            };
-            words.chunks_exact(2).flat_map(answer).collect()
-        })
-        .collect();
-    let answers = exchange_words(comm, replies);
-    answers
-        .iter()
-        .flat_map(|w| w.chunks_exact(2))
-        .map(|pair| {
-            let diagonal = f64::from_bits(pair[1]);
-            let state = if pair[0] & 1 == 1 {
-                State::Free(diagonal)
-            } else {
-                State::Fixed(diagonal)
-            };
-            ((pair[0] >> 1) as u32, state)
-        })
-        .collect()
+        .map(|list| list.iter().map(answer).collect());
+    let state = |of: DofState| match of.full {
+        0 => State::Fixed(of.diagonal),
+        _ => State::Free(of.diagonal),
+    };
+    let answers = exchange(comm, replies.collect()).into_iter();
+    answers.map(|of| (of.dof, state(of))).collect()
 }

@@ -10,7 +10,7 @@ use super::torn::GivenRow;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
-use parallel::exchange::{any, exchange_words};
+use parallel::exchange::{any, exchange, exchange_by_rank};
 use parallel::halo::Halo;
 use parallel::owners::Owners;
 use petsc::{Session, Vec as PetscVec};
@@ -42,8 +42,8 @@ pub enum Holder {
 }
 
 impl Holder {
-    /// The holder as two words.
-    pub fn words(self) -> [u64; 2] {
+    /// A number for the kind of holder, and its number, as ranks tell each other.
+    pub fn code(self) -> [u64; 2] {
         match self {
             Holder::Body(body) => [0, body],
             Holder::Known(rank) => [1, rank as u64],
@@ -51,11 +51,11 @@ impl Holder {
         }
     }
 
-    /// The holder of two words.
-    pub fn of_words(words: &[u64]) -> Holder {
-        match words[0] {
-            0 => Holder::Body(words[1]),
-            1 => Holder::Known(words[1] as usize),
+    /// The holder with this [`code`](Self::code).
+    pub fn of_code([kind, number]: [u64; 2]) -> Holder {
+        match kind {
+            0 => Holder::Body(number),
+            1 => Holder::Known(number as usize),
             _ => Holder::Nobody,
         }
     }
@@ -118,12 +118,12 @@ impl Touched {
 fn asked(session: &Session, owners: &Owners, dofs: &[u32]) -> BTreeMap<u32, Owned> {
     let mut outgoing = vec![Vec::new(); session.size()];
     for &dof in dofs {
-        outgoing[owners.of(dof)].push(u64::from(dof));
+        outgoing[owners.of(dof)].push(dof);
     }
     let mut owned: BTreeMap<u32, Owned> = BTreeMap::new();
-    for (rank, words) in exchange_words(session.comm(), outgoing).iter().enumerate() {
-        for &word in words {
-            let dof = word as u32;
+    let received = exchange_by_rank(session.comm(), outgoing);
+    for (rank, dofs) in received.into_iter().enumerate() {
+        for dof in dofs {
             let new = || Owned {
                 holder: Holder::Nobody,
                 block: dof,
@@ -161,7 +161,7 @@ fn reported(
     let touched: Vec<u32> = touched.map(|(&dof, _)| dof).collect();
     let mut outgoing = vec![Vec::new(); session.size()];
     let mut report = |dof: u32, body: u64| {
-        outgoing[owners.of(dof)].extend([u64::from(dof), body]);
+        outgoing[owners.of(dof)].push([u64::from(dof), body]);
     };
     for &dof in touched.iter().filter(|d| here.known.contains(d)) {
         report(dof, KNOWN);
@@ -177,10 +177,11 @@ fn reported(
             report(dof, body as u64);
         }
     }
-    for (rank, words) in exchange_words(session.comm(), outgoing).iter().enumerate() {
-        for w in words.chunks_exact(2) {
-            let dof = owned.get_mut(&(w[0] as u32)).expect("it was marked");
-            dof.holder = match (dof.holder, w[1]) {
+    let received = exchange_by_rank(session.comm(), outgoing);
+    for (rank, reports) in received.into_iter().enumerate() {
+        for [dof, body] in reports {
+            let dof = owned.get_mut(&(dof as u32)).expect("it was marked");
+            dof.holder = match (dof.holder, body) {
                 (Holder::Body(known), body) => Holder::Body(known.min(body)),
                 (Holder::Known(first), KNOWN) => Holder::Known(first),
                 (Holder::Nobody, KNOWN) => Holder::Known(rank),
@@ -202,12 +203,12 @@ fn told(session: &Session, owned: &BTreeMap<u32, Owned>) -> Vec<Holder> {
     let mut outgoing = vec![Vec::new(); session.size()];
     for dof in owned.values() {
         for &rank in &dof.askers {
-            outgoing[rank].extend(dof.holder.words());
+            outgoing[rank].push(dof.holder.code());
         }
     }
     // Higher ranks own higher dofs.
-    let words = exchange_words(session.comm(), outgoing).concat();
-    words.chunks_exact(2).map(Holder::of_words).collect()
+    let codes = exchange(session.comm(), outgoing).into_iter();
+    codes.map(Holder::of_code).collect()
 }
 
 /// The block of each of the dofs, of which some are unknowns. `sets` are connected by rows that this rank gave. Owners
@@ -230,18 +231,14 @@ fn connect(
             let low = lowest[sets.find(k)];
             if low < told[k] {
                 news = true;
-                outgoing[owners.of(dofs[k])].extend([u64::from(dofs[k]), u64::from(low)]);
+                outgoing[owners.of(dofs[k])].push([dofs[k], low]);
             }
         }
         if !any(session.comm(), news) {
             return (0..dofs.len()).map(|k| lowest[sets.find(k)]).collect();
         }
         let mut changed = Vec::new();
-        for w in exchange_words(session.comm(), outgoing)
-            .concat()
-            .chunks_exact(2)
-        {
-            let (dof, low) = (w[0] as u32, w[1] as u32);
+        for [dof, low] in exchange(session.comm(), outgoing) {
             let known = owned.get_mut(&dof).expect("it was asked for");
             if low < known.block {
                 known.block = low;
@@ -251,16 +248,13 @@ fn connect(
         let mut outgoing = vec![Vec::new(); session.size()];
         for dof in distinct(changed) {
             for &rank in &owned[&dof].askers {
-                outgoing[rank].extend([u64::from(dof), u64::from(owned[&dof].block)]);
+                outgoing[rank].push([dof, owned[&dof].block]);
             }
         }
-        for w in exchange_words(session.comm(), outgoing)
-            .concat()
-            .chunks_exact(2)
-        {
-            let k = dofs.binary_search(&(w[0] as u32));
+        for [dof, low] in exchange(session.comm(), outgoing) {
+            let k = dofs.binary_search(&dof);
             let k = k.expect("this rank asked for it");
-            told[k] = w[1] as u32;
+            told[k] = low;
             let set = sets.find(k);
             lowest[set] = lowest[set].min(told[k]);
         }
@@ -273,10 +267,9 @@ fn to_holders(session: &Session, owned: &BTreeMap<u32, Owned>) -> HashMap<u32, u
     let unknown = |o: &&Owned| matches!(o.holder, Holder::Body(_));
     for (&dof, it) in owned.iter().filter(|(_, o)| unknown(o)) {
         for &rank in &it.holders {
-            outgoing[rank].push(u64::from(dof) << 32 | u64::from(it.block));
+            outgoing[rank].push([dof, it.block]);
         }
     }
-    let words = exchange_words(session.comm(), outgoing).concat();
-    let pair = |w: u64| ((w >> 32) as u32, w as u32);
-    words.into_iter().map(pair).collect()
+    let pairs = exchange(session.comm(), outgoing).into_iter();
+    pairs.map(|[dof, block]| (dof, block)).collect()
 }

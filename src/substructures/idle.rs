@@ -14,6 +14,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::Subdomain;
 use base::{Error, Result};
+use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 
 /// The part of a subdomain in a motion of its body that has no energy and that no row sees.
@@ -67,12 +68,12 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
         let work: f64 = loads.clone().zip(&idle.values).map(|(f, v)| f * v).sum();
         [work, loads.map(|f| f * f).sum()]
     });
-    let strains = each(local).map(|(key, _, idle)| [key, idle.strain.to_bits()]);
-    let strains = gather_all(comm, &strains.flatten().collect::<Vec<u64>>()).concat();
-    let strains: BTreeMap<u64, f64> = strains
-        .chunks_exact(2)
-        .map(|w| (w[0], f64::from_bits(w[1])))
-        .collect();
+    let strains = each(local).map(|(key, _, idle)| OfMotion {
+        key,
+        values: [idle.strain, 0.0],
+    });
+    let strains = gather_all(comm, &strains.collect::<Vec<_>>()).concat();
+    let strains: BTreeMap<u64, f64> = strains.iter().map(|s| (s.key, s.values[0])).collect();
     let most = |key: &u64| WORK.max(TURNED * strains[key]).min(0.1);
     let driven = sums
         .iter()
@@ -84,17 +85,17 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
     let what = each(local)
         .find(|(k, _, _)| *k == key)
         .map(|(_, _, idle)| idle.what.clone());
-    let words = what
+    let what: Vec<u32> = what
         .iter()
-        .flat_map(|text| text.bytes().map(u64::from))
-        .collect::<Vec<u64>>();
-    let all = gather_all(comm, &words);
+        .flat_map(|text| text.chars().map(u32::from))
+        .collect();
+    let all = gather_all(comm, &what).into_iter();
     let text = all
         .into_iter()
-        .find(|words| !words.is_empty())
+        .find(|text| !text.is_empty())
         .unwrap_or_default();
-    let text: Vec<u8> = text.into_iter().map(|b| b as u8).collect();
-    Err(Error::input(String::from_utf8_lossy(&text).into_owned()))
+    let text: String = text.into_iter().filter_map(char::from_u32).collect();
+    Err(Error::input(text))
 }
 
 /// Takes the displacement along idle motions away. Collective.
@@ -120,6 +121,14 @@ pub fn settle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]
     }
 }
 
+/// Numbers about a part of a motion, by its body and number.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct OfMotion {
+    key: u64,
+    values: [f64; 2],
+}
+
 /// All parts of this rank, by body and number.
 fn each(local: &[Subdomain]) -> impl Iterator<Item = (u64, &Subdomain, &Idle)> {
     local.iter().flat_map(|s| {
@@ -134,16 +143,14 @@ fn sums(
     local: &[Subdomain],
     of: impl Fn(&Subdomain, &Idle) -> [f64; 2],
 ) -> BTreeMap<u64, [f64; 2]> {
-    let words = each(local).flat_map(|(key, s, idle)| {
-        let [a, b] = of(s, idle);
-        [key, a.to_bits(), b.to_bits()]
+    let mine = each(local).map(|(key, s, idle)| OfMotion {
+        key,
+        values: of(s, idle),
     });
-    let all = gather_all(comm, &words.collect::<Vec<u64>>()).concat();
     let mut sums: BTreeMap<u64, [f64; 2]> = BTreeMap::new();
-    for w in all.chunks_exact(3) {
-        let sum = sums.entry(w[0]).or_default();
-        sum[0] += f64::from_bits(w[1]);
-        sum[1] += f64::from_bits(w[2]);
+    for part in gather_all(comm, &mine.collect::<Vec<_>>()).concat() {
+        let sum = sums.entry(part.key).or_default();
+        (0..2).for_each(|k| sum[k] += part.values[k]);
     }
     sums
 }

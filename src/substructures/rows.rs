@@ -6,7 +6,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use base::linalg::sorted::distinct;
-use parallel::exchange::{exchange, gather_all, Record};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::{exchange, gather_all};
 
 /// The kind of a row: an equation, or an inequality that the contact loop may switch off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +82,26 @@ pub struct RowLabel {
     pub area: f64,
 }
 
+impl RowSource {
+    /// A number for the kind, and the index, as ranks tell each other.
+    pub fn code(self) -> [usize; 2] {
+        match self {
+            RowSource::Interface(k) => [0, k],
+            RowSource::Obstacle(k) => [1, k],
+            RowSource::Equation(k) => [2, k],
+        }
+    }
+
+    /// The source with this [`code`](Self::code).
+    pub fn of_code([kind, k]: [usize; 2]) -> RowSource {
+        match kind {
+            0 => RowSource::Interface(k),
+            2 => RowSource::Equation(k),
+            _ => RowSource::Obstacle(k),
+        }
+    }
+}
+
 impl RowLabel {
     /// The label of a row without geometric data.
     pub fn new(source: RowSource, members: [Option<BodyNode>; 2]) -> RowLabel {
@@ -119,6 +140,17 @@ pub enum RowState {
     Tied,
 }
 
+impl RowState {
+    /// The state of a row of this kind, which holds or does not.
+    fn new(kind: RowKind, holds: bool) -> RowState {
+        match (holds, kind) {
+            (false, _) => RowState::Open,
+            (true, RowKind::Inequality) => RowState::Holds,
+            (true, RowKind::Equality) => RowState::Tied,
+        }
+    }
+}
+
 /// A row of B_gl after a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -143,11 +175,7 @@ impl SolvedRow {
         SolvedRow {
             label: row.label,
             kind: row.kind,
-            state: match (holds, row.kind) {
-                (false, _) => RowState::Open,
-                (true, RowKind::Inequality) => RowState::Holds,
-                (true, RowKind::Equality) => RowState::Tied,
-            },
+            state: RowState::new(row.kind, holds),
             multiplier,
             gap: -excess,
             block: row.block,
@@ -196,8 +224,9 @@ impl SolvedRow {
     /// The rows of all ranks on the first one, by rank; none on the others. Collective.
     pub fn on_first_rank(comm: &SimpleCommunicator, rows: &[SolvedRow]) -> Vec<SolvedRow> {
         let mut outgoing = vec![Vec::new(); comm.size() as usize];
-        outgoing[0] = rows.to_vec();
-        exchange(comm, outgoing)
+        outgoing[0] = rows.iter().map(SentRow::new).collect();
+        let rows = exchange(comm, outgoing);
+        rows.iter().map(SentRow::row).collect()
     }
 
     /// On each rank the rows with a node of a body that it has, in order of their blocks; `ranks_of` gives the ranks
@@ -219,92 +248,82 @@ impl SolvedRow {
             }
             distinct(to)
                 .into_iter()
-                .for_each(|r| outgoing[r].push(*row));
+                .for_each(|r| outgoing[r].push(SentRow::new(row)));
         }
-        let mut rows = exchange(comm, outgoing);
+        let rows = exchange(comm, outgoing);
+        let mut rows: Vec<SolvedRow> = rows.iter().map(SentRow::row).collect();
         rows.sort_by_key(|row| row.block);
         rows
     }
 
     /// The rows of all ranks on every one, in order of their blocks. Collective.
     pub fn on_all_ranks(comm: &SimpleCommunicator, rows: &[SolvedRow]) -> Vec<SolvedRow> {
-        let mut words = Vec::with_capacity(rows.len() * SolvedRow::WORDS);
-        rows.iter().for_each(|row| row.pack(&mut words));
-        let words = gather_all(comm, &words).concat();
-        let rows = words.chunks_exact(SolvedRow::WORDS).map(SolvedRow::unpack);
-        let mut rows: Vec<SolvedRow> = rows.collect();
+        let mine: Vec<SentRow> = rows.iter().map(SentRow::new).collect();
+        let rows = gather_all(comm, &mine).concat();
+        let mut rows: Vec<SolvedRow> = rows.iter().map(SentRow::row).collect();
         rows.sort_by_key(|row| row.block);
         rows
     }
 }
 
-impl Record for RowSource {
-    const WORDS: usize = 2;
-
-    fn pack(&self, out: &mut Vec<u64>) {
-        let (kind, number) = match *self {
-            RowSource::Interface(k) => (0, k),
-            RowSource::Obstacle(k) => (1, k),
-            RowSource::Equation(k) => (2, k),
-        };
-        out.extend([kind, number as u64]);
-    }
-
-    fn unpack(w: &[u64]) -> RowSource {
-        let number = w[1] as usize;
-        match w[0] {
-            0 => RowSource::Interface(number),
-            2 => RowSource::Equation(number),
-            _ => RowSource::Obstacle(number),
-        }
-    }
+/// A [`SolvedRow`] on its way to other ranks.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SentRow {
+    source: [usize; 2],
+    block: u64,
+    inequality: u32,
+    holds: u32,
+    /// Body and node; the largest numbers where there is none.
+    members: [[usize; 2]; 2],
+    point: [f64; 3],
+    t: [f64; 2],
+    normal: [f64; 3],
+    area: f64,
+    multiplier: f64,
+    gap: f64,
 }
 
-impl Record for SolvedRow {
-    const WORDS: usize = 19;
-
-    fn pack(&self, out: &mut Vec<u64>) {
-        let label = &self.label;
-        let flags = u64::from(self.is_inequality()) | u64::from(self.holds()) << 1;
-        label.source.pack(out);
-        out.extend([flags, self.block]);
-        for member in label.members {
-            let [body, node] = member.map_or([usize::MAX; 2], |m| [m.body, m.node]);
-            out.extend([body as u64, node as u64]);
+impl SentRow {
+    fn new(row: &SolvedRow) -> SentRow {
+        let member = |m: Option<BodyNode>| m.map_or([usize::MAX; 2], |m| [m.body, m.node]);
+        let label = &row.label;
+        SentRow {
+            source: label.source.code(),
+            block: row.block,
+            inequality: row.is_inequality().into(),
+            holds: row.holds().into(),
+            members: label.members.map(member),
+            point: label.point,
+            t: label.t,
+            normal: label.normal,
+            area: label.area,
+            multiplier: row.multiplier,
+            gap: row.gap,
         }
-        let vectors = label.point.into_iter().chain(label.normal).chain(label.t);
-        let values = vectors.chain([label.area, self.multiplier, self.gap]);
-        out.extend(values.map(f64::to_bits));
     }
 
-    fn unpack(w: &[u64]) -> SolvedRow {
-        let value = |k: usize| f64::from_bits(w[k]);
-        let member = |k: usize| {
-            (w[k] != u64::MAX).then_some(BodyNode {
-                body: w[k] as usize,
-                node: w[k + 1] as usize,
-            })
-        };
-        let (kind, state) = match (w[2] & 1, w[2] & 2) {
-            (0, 0) => (RowKind::Equality, RowState::Open),
-            (0, _) => (RowKind::Equality, RowState::Tied),
-            (_, 0) => (RowKind::Inequality, RowState::Open),
-            _ => (RowKind::Inequality, RowState::Holds),
+    fn row(&self) -> SolvedRow {
+        let member =
+            |[body, node]: [usize; 2]| (body != usize::MAX).then_some(BodyNode { body, node });
+        let kind = match self.inequality {
+            0 => RowKind::Equality,
+            _ => RowKind::Inequality,
         };
         SolvedRow {
             label: RowLabel {
-                source: RowSource::unpack(w),
-                members: [member(4), member(6)],
-                point: [8, 9, 10].map(value),
-                normal: [11, 12, 13].map(value),
-                t: [14, 15].map(value),
-                area: value(16),
+                source: RowSource::of_code(self.source),
+                members: self.members.map(member),
+                point: self.point,
+                t: self.t,
+                normal: self.normal,
+                area: self.area,
             },
             kind,
-            state,
-            multiplier: value(17),
-            gap: value(18),
-            block: w[3],
+            state: RowState::new(kind, self.holds != 0),
+            multiplier: self.multiplier,
+            gap: self.gap,
+            block: self.block,
         }
     }
 }

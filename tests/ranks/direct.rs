@@ -86,16 +86,16 @@ pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> base::R
         let why = format!("{name}: {}", solution.status);
         return Err(Error::not_converged(why));
     }
-    let all = |values: Vec<u64>| gather_all(session.comm(), &values).concat();
     let dofs = solver.problem().local.iter().flat_map(|s| &s.dofs);
-    let dofs = all(dofs.copied().collect());
-    let values = solution.u.iter().flatten().map(|u| u.to_bits());
-    let values = all(values.collect());
-    let rows = solution.rows().iter().map(|r| r.multiplier.to_bits());
-    let rows = all(rows.collect());
+    let dofs = gather_all(session.comm(), &dofs.copied().collect::<Vec<_>>()).concat();
+    let values = gather_all(session.comm(), &solution.u.concat()).concat();
+    let rows: Vec<f64> = solution.rows().iter().map(|r| r.multiplier).collect();
+    let values = [values, gather_all(session.comm(), &rows).concat()].concat();
     if session.rank() == 0 {
-        let words = [vec![dofs.len() as u64], dofs, values, rows].concat();
-        let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        let words = [vec![dofs.len() as u64], dofs].concat();
+        let values = values.iter().flat_map(|v| v.to_le_bytes());
+        let words = words.iter().flat_map(|w| w.to_le_bytes());
+        let bytes: Vec<u8> = words.chain(values).collect();
         std::fs::write(Path::new(out).join(name), bytes)
             .map_err(|e| Error::input(e.to_string()))?;
     }

@@ -69,27 +69,24 @@ pub fn answer(
     }
 
     let comm = session.comm();
-    let all = |values: Vec<u64>| gather_all(comm, &values).concat();
     let subdomains = &solver.problem().local;
     let dofs = subdomains.iter().flat_map(|s| s.dofs.iter().copied());
-    let values = solution.u.iter().flatten().map(|u| u.to_bits());
-    let (dofs, values) = (all(dofs.collect()), all(values.collect()));
-    let copies = dofs.iter().zip(values.into_iter().map(f64::from_bits));
-    let u = problem.gather(copies.map(|(&d, u)| (d, u)), 1e-8);
+    let dofs = gather_all(comm, &dofs.collect::<Vec<u64>>()).concat();
+    let values = gather_all(comm, &solution.u.concat()).concat();
+    let u = problem.gather(dofs.into_iter().zip(values), 1e-8);
 
     // The rows that a rank provides are those of the scene at its points, in the same order.
     let places = scene.points.iter().map(|p| (p.block, p.subdomain));
     let places: HashMap<u64, usize> = places.collect();
-    let provided: Vec<u64> = (0..problem.rows.len())
+    let provided: Vec<usize> = (0..problem.rows.len())
         .filter(|&r| mine(places[&problem.rows[r].block]))
-        .map(|r| r as u64)
         .collect();
-    let solved = solution.rows();
-    let rows = all(provided);
-    let values = all(solved.iter().map(|r| r.multiplier.to_bits()).collect());
+    let solved: Vec<f64> = solution.rows().iter().map(|r| r.multiplier).collect();
+    let rows = gather_all(comm, &provided).concat();
+    let values = gather_all(comm, &solved).concat();
     let mut lambda = vec![f64::NAN; problem.rows.len()];
     for (row, value) in rows.into_iter().zip(values) {
-        lambda[row as usize] = f64::from_bits(value);
+        lambda[row] = value;
     }
     Ok((u.map_err(Error::input)?, lambda, solution.energy))
 }

@@ -12,6 +12,7 @@ use mpi::traits::Communicator;
 use super::multifrontal::{Elimination, PartialCholesky, Pivots};
 use super::team::Team;
 use base::linalg::csr::Csr;
+use bytemuck::{Pod, Zeroable};
 use parallel::clock::{self, Phase};
 use parallel::exchange::{gather_all, sum_all};
 use parallel::post::{posting, received, received_any, Address};
@@ -23,6 +24,15 @@ pub struct SharedCholesky {
     factor: PartialCholesky,
     /// A number for every row of the pattern; those of this rank and its ghosts are in use.
     work: RefCell<Vec<f64>>,
+}
+
+/// An entry of a null vector, by the number of the vector.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct NullEntry {
+    vector: u32,
+    dof: u32,
+    value: f64,
 }
 
 impl SharedCholesky {
@@ -51,9 +61,8 @@ impl SharedCholesky {
                 }
             }
         });
-        let weak: Vec<u64> = weak.iter().map(|&d| u64::from(team.name(d))).collect();
-        let left = gather_all(comm, &weak).concat();
-        let mut left: Vec<u32> = left.into_iter().map(|dof| dof as u32).collect();
+        let weak: Vec<u32> = weak.iter().map(|&d| team.name(d)).collect();
+        let mut left = gather_all(comm, &weak).concat();
         left.sort_unstable();
         let factor = PartialCholesky {
             symbolic: team.symbolic.clone(),
@@ -167,7 +176,7 @@ impl SharedCholesky {
             let row = team.dof(name as u32).and_then(|dof| team.row(dof));
             row.expect("a message is about rows below a front")
         };
-        let mut words: Vec<u64> = Vec::new();
+        let mut mine: Vec<NullEntry> = Vec::new();
         let mut v = vec![0.0; symbolic.n()];
         for (k, &of_all) in dofs.iter().enumerate() {
             let dof = team.dof(of_all);
@@ -200,18 +209,18 @@ impl SharedCholesky {
             for &p in &team.own_rows {
                 let value = std::mem::take(&mut v[p as usize]);
                 if value != 0.0 {
-                    let scaled = value * scale[symbolic.interior[p as usize] as usize];
-                    words.extend([k as u64, u64::from(name(p)), scaled.to_bits()]);
+                    mine.push(NullEntry {
+                        vector: k as u32,
+                        dof: name(p),
+                        value: value * scale[symbolic.interior[p as usize] as usize],
+                    });
                 }
             }
             team.ghost_rows.iter().for_each(|&p| v[p as usize] = 0.0);
         }
         let mut vectors = vec![Vec::new(); dofs.len()];
-        for words in gather_all(&team.comm, &words) {
-            for entry in words.chunks_exact(3) {
-                let value = f64::from_bits(entry[2]);
-                vectors[entry[0] as usize].push((entry[1] as u32, value));
-            }
+        for entry in gather_all(&team.comm, &mine).concat() {
+            vectors[entry.vector as usize].push((entry.dof, entry.value));
         }
         for v in &mut vectors {
             v.sort_by_key(|e| e.0);

@@ -9,15 +9,17 @@ use super::row_forces::RowForces;
 use base::linalg::sorted::distinct;
 use base::linalg::vec3::{minus, norm};
 use base::Result;
+use bytemuck::{Pod, Zeroable};
 use fetifeti::problem::BodyNode;
 use fetifeti::{FetiFeti, Solution, Subdomain};
-use parallel::exchange::{any, exchange_words, highest, total};
+use parallel::exchange::{any, exchange, highest, total};
 use petsc::Session;
 use report::json::contact::{Amount, BodyBalance};
 use scene::{Body, Forces, Scene, Wrench};
 
 /// The forces on a body.
-#[derive(Clone, Copy, Default)]
+#[repr(C)]
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
 struct Sums {
     load: Wrench,
     springs: Wrench,
@@ -29,45 +31,27 @@ struct Sums {
     resistance: [f64; 6],
 }
 
-/// Numbers in [`Sums`].
-const SUMS: usize = 4 * 8 + 7;
+/// The forces on a body that one rank has.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct BodySums {
+    body: usize,
+    sums: Sums,
+}
 
 impl Sums {
     fn all(&self) -> [&Wrench; 4] {
         [&self.load, &self.springs, &self.contact, &self.reaction]
     }
 
-    fn words(&self) -> impl Iterator<Item = u64> + '_ {
-        let of = |w: &Wrench| {
-            let numbers = w.force.into_iter().chain(w.moment).chain([w.size, w.lever]);
-            numbers.collect::<Vec<f64>>()
-        };
-        let rest = self.resistance.into_iter().chain([self.terms]);
-        let numbers = self.all().into_iter().flat_map(of).chain(rest);
-        numbers.map(f64::to_bits)
-    }
-
-    fn add(&mut self, words: &[u64]) {
-        let number = |k: usize| f64::from_bits(words[k]);
-        let to = [
-            &mut self.load,
-            &mut self.springs,
-            &mut self.contact,
-            &mut self.reaction,
-        ];
-        for (k, wrench) in to.into_iter().enumerate() {
-            let of = |i: usize| number(8 * k + i);
-            wrench.merge(&Wrench {
-                force: [of(0), of(1), of(2)],
-                moment: [of(3), of(4), of(5)],
-                size: of(6),
-                lever: of(7),
-            });
-        }
-        for (d, r) in self.resistance.iter_mut().enumerate() {
-            *r += number(32 + d);
-        }
-        self.terms += number(SUMS - 1);
+    fn add(&mut self, more: &Sums) {
+        self.load.merge(&more.load);
+        self.springs.merge(&more.springs);
+        self.contact.merge(&more.contact);
+        self.reaction.merge(&more.reaction);
+        self.terms += more.terms;
+        let each = self.resistance.iter_mut().zip(more.resistance);
+        each.for_each(|(to, r)| *to += r);
     }
 }
 
@@ -125,14 +109,12 @@ pub(super) fn bodies(
     let own = solver.problem().local.iter().map(|sub| sub.body);
     if session.rank() > 0 {
         for body in distinct(own.chain(touched)) {
-            outgoing[0].push(body as u64);
-            outgoing[0].extend(sums[body].words());
+            let sums = sums[body];
+            outgoing[0].push(BodySums { body, sums });
         }
     }
-    for words in exchange_words(session.comm(), outgoing) {
-        for words in words.chunks_exact(1 + SUMS) {
-            sums[words[0] as usize].add(&words[1..]);
-        }
+    for more in exchange(session.comm(), outgoing) {
+        sums[more.body].add(&more.sums);
     }
     let error = error(session, solver, solution, strained)?;
     if session.rank() > 0 {

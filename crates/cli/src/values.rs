@@ -4,9 +4,11 @@ use super::course::Course;
 use super::fields::to_first_rank;
 use super::row_forces::RowForces;
 use base::{Error, Result};
+use bytemuck::{Pod, Zeroable};
 use elements::element;
+use fetifeti::problem::BodyNode;
 use fetifeti::{FetiFeti, Solution};
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange;
 use petsc::Session;
 use report::json::probes::ProbeValue;
 use scene::assembly::{internal_force, SubdomainMesh};
@@ -16,6 +18,15 @@ use scene::{Scene, SteppedMesh};
 pub(super) struct Values {
     by_body: Vec<Vec<f64>>,
     components: usize,
+}
+
+/// The force of a row on a node of a body.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct NodeForce {
+    body: usize,
+    node: usize,
+    force: [f64; 3],
 }
 
 impl Values {
@@ -48,18 +59,14 @@ impl Values {
         let mut outgoing = vec![Vec::new(); session.size()];
         RowForces::new(session, scene)?.each(course.solution.rows(), |row, _, at, force| {
             if row.is_inequality() {
-                outgoing[0].extend([at.body as u64, at.node as u64]);
-                outgoing[0].extend(force.map(f64::to_bits));
+                let BodyNode { body, node } = at;
+                outgoing[0].push(NodeForce { body, node, force });
             }
         });
-        for words in exchange_words(session.comm(), outgoing) {
-            for word in words.chunks_exact(5) {
-                let [body, node] = [word[0] as usize, word[1] as usize];
-                let first = all.components * node;
-                let to = &mut all.by_body[body][first..first + all.components];
-                let force = word[2..].iter().map(|&w| f64::from_bits(w));
-                to.iter_mut().zip(force).for_each(|(to, f)| *to -= f);
-            }
+        for NodeForce { body, node, force } in exchange(session.comm(), outgoing) {
+            let first = all.components * node;
+            let to = &mut all.by_body[body][first..first + all.components];
+            to.iter_mut().zip(force).for_each(|(to, f)| *to -= f);
         }
         Ok(all)
     }

@@ -1,8 +1,9 @@
 //! Irregular messages during set-up: every rank sends every rank a list of records.
 //!
-//! Records travel as 64-bit words. The iteration does not use this module: it uses PETSc's scatters, which are set up
-//! once.
+//! Records are plain data ([`Pod`]) and travel as the bytes that they have in memory, in words of 32 bits. The iteration
+//! does not use this module: it uses PETSc's scatters, which are set up once.
 
+use bytemuck::{cast_slice, pod_collect_to_vec, Pod};
 use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::SimpleCommunicator;
@@ -11,54 +12,63 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 use super::traffic::Traffic;
 use crate::traffic;
 
-/// A value that is sent as a fixed number of words.
-pub trait Record: Sized {
-    /// Words of one record.
-    const WORDS: usize;
-    /// Appends the record.
-    fn pack(&self, out: &mut Vec<u64>);
-    /// Reads a record of `WORDS` words.
-    fn unpack(words: &[u64]) -> Self;
+/// A message of a rank to another one: a list of records, or [`Parcels`](super::parcels::Parcels).
+pub trait Message: Default {
+    /// Appends the message; an empty one has no words.
+    fn write(&self, words: &mut Vec<u32>);
+    /// The message of these words.
+    fn read(words: &[u32]) -> Self;
+}
+
+impl<T: Pod> Message for Vec<T> {
+    fn write(&self, words: &mut Vec<u32>) {
+        words.extend_from_slice(cast_slice(self));
+    }
+    fn read(words: &[u32]) -> Vec<T> {
+        pod_collect_to_vec(words)
+    }
 }
 
 /// Sends `outgoing[r]` to rank r and returns what all ranks sent here, one after the other by rank of the sender.
 /// Collective.
-pub fn exchange<T: Record>(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<T>>) -> Vec<T> {
-    let rank = comm.rank() as usize;
-    // Records for this rank itself are the majority; they are not packed.
-    let mut own = Some(std::mem::take(&mut outgoing[rank]));
-    let pack = |list: &Vec<T>| {
-        let mut words = Vec::with_capacity(list.len() * T::WORDS);
-        list.iter().for_each(|record| record.pack(&mut words));
-        words
-    };
-    let packed = outgoing.iter().map(pack).collect();
-    drop(outgoing);
+///
+/// # Panics
+/// For records that are no whole words: types smaller than 32 bits.
+pub fn exchange<T: Pod>(comm: &SimpleCommunicator, outgoing: Vec<Vec<T>>) -> Vec<T> {
     let mut all = Vec::new();
-    for (from, words) in exchange_words(comm, packed).into_iter().enumerate() {
-        match own.take_if(|_| from == rank) {
-            Some(own) if all.is_empty() => all = own,
-            Some(own) => all.extend(own),
-            None => all.extend(words.chunks_exact(T::WORDS).map(T::unpack)),
+    for list in exchange_by_rank(comm, outgoing) {
+        // Most records are those of this rank for itself; they are not copied where they come first.
+        if all.is_empty() {
+            all = list;
+        } else {
+            all.extend(list);
         }
     }
     all
 }
 
-/// Sends `outgoing[r]`, words and lists of any length, to rank r and returns what every rank sent here, by rank of the
-/// sender. Collective.
-pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
+/// Sends `outgoing[r]` to rank r and returns what every rank sent here, by rank of the sender. Collective.
+///
+/// # Panics
+/// As [`exchange`].
+pub fn exchange_by_rank<M: Message>(comm: &SimpleCommunicator, mut outgoing: Vec<M>) -> Vec<M> {
     let (size, rank) = (comm.size() as usize, comm.rank() as usize);
     debug_assert_eq!(outgoing.len(), size);
-    let own = std::mem::take(&mut outgoing[rank]);
     if size == 1 {
-        return vec![own];
+        return outgoing;
     }
-    let send_counts: Vec<i32> = outgoing.iter().map(|w| count(w.len())).collect();
+    let own = std::mem::take(&mut outgoing[rank]);
+    let mut words = Vec::new();
+    let written = outgoing.into_iter().map(|message| {
+        let before = words.len();
+        message.write(&mut words);
+        count(words.len() - before)
+    });
+    let send_counts: Vec<i32> = written.collect();
     let mut counts = vec![0i32; size];
     comm.all_to_all_into(&send_counts[..], &mut counts[..]);
-    let (sent, send_starts) = (outgoing.concat(), starts(&send_counts));
-    let from = Partition::new(&sent[..], &send_counts[..], &send_starts[..]);
+    let send_starts = starts(&send_counts);
+    let from = Partition::new(&words[..], &send_counts[..], &send_starts[..]);
     let mut all = received(&counts, |into| comm.all_to_all_varcount_into(&from, into));
     all[rank] = own;
     all
@@ -74,21 +84,21 @@ fn starts(counts: &[i32]) -> Vec<i32> {
     before.collect()
 }
 
-/// Views the received words, given the number of words from each rank.
-fn received(
+/// The messages of all ranks, given the number of words of each.
+fn received<M: Message>(
     counts: &[i32],
-    receive: impl FnOnce(&mut PartitionMut<[u64], &[i32], &[i32]>),
-) -> Vec<Vec<u64>> {
+    receive: impl FnOnce(&mut PartitionMut<[u32], &[i32], &[i32]>),
+) -> Vec<M> {
     let starts = starts(counts);
-    let mut words = vec![0u64; counts.iter().map(|&c| c as usize).sum()];
+    let mut words = vec![0u32; counts.iter().map(|&c| c as usize).sum()];
     receive(&mut PartitionMut::new(&mut words[..], counts, &starts[..]));
     let lists = counts.iter().zip(&starts);
     lists
-        .map(|(&c, &s)| words[s as usize..(s + c) as usize].to_vec())
+        .map(|(&c, &s)| M::read(&words[s as usize..(s + c) as usize]))
         .collect()
 }
 
-/// Converts to a C int, the type of MPI counts: 2³¹ words to one rank would be 16 GB of interface.
+/// Converts to a C int, the type of MPI counts: 2³¹ words to one rank would be 8 GB of interface.
 fn count(n: usize) -> i32 {
     i32::try_from(n).expect("fewer than 2^31 words go to one rank")
 }
@@ -142,11 +152,19 @@ fn reduce(comm: &SimpleCommunicator, values: &mut [f64], operation: SystemOperat
     }
 }
 
-/// Every rank's words, in the order of the ranks. Collective.
-pub fn gather_all(comm: &SimpleCommunicator, mine: &[u64]) -> Vec<Vec<u64>> {
-    if comm.size() == 1 {
-        return vec![mine.to_vec()];
+/// Every rank's records, in the order of the ranks. Collective.
+///
+/// # Panics
+/// As [`exchange`].
+pub fn gather_all<T: Pod>(comm: &SimpleCommunicator, mine: &[T]) -> Vec<Vec<T>> {
+    match comm.size() {
+        1 => vec![mine.to_vec()],
+        _ => gather_words(comm, cast_slice(mine)),
     }
+}
+
+/// The messages of all ranks, in the order of the ranks; this one's has these words. Collective.
+pub(super) fn gather_words<M: Message>(comm: &SimpleCommunicator, mine: &[u32]) -> Vec<M> {
     let mut counts = vec![0i32; comm.size() as usize];
     comm.all_gather_into(&count(mine.len()), &mut counts[..]);
     received(&counts, |into| comm.all_gather_varcount_into(mine, into))
@@ -154,8 +172,7 @@ pub fn gather_all(comm: &SimpleCommunicator, mine: &[u64]) -> Vec<Vec<u64>> {
 
 /// (Σ of `n` over the lower ranks, Σ over all ranks). Collective.
 pub fn offsets(comm: &SimpleCommunicator, n: usize) -> (usize, usize) {
-    let all = gather_all(comm, &[n as u64]);
-    let counts = all.iter().map(|w| w[0] as usize);
-    let before = counts.clone().take(comm.rank() as usize).sum();
-    (before, counts.sum())
+    let counts = gather_all(comm, &[n]).concat();
+    let before = counts[..comm.rank() as usize].iter().sum();
+    (before, counts.iter().sum())
 }

@@ -6,7 +6,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::clock::Phase;
-use super::exchange::exchange_words;
+use super::exchange::exchange;
 use super::owners::Owners;
 use super::traffic::Traffic;
 use crate::clock;
@@ -102,7 +102,7 @@ fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffi
     }
     wanted[rank] = 0;
     let asked = wanted.iter().map(|&n| vec![n]).collect();
-    let asking = exchange_words(comm, asked).concat();
+    let asking = exchange(comm, asked);
     (
         Traffic::of_counts(asking.into_iter()),
         Traffic::of_counts(wanted.into_iter()),

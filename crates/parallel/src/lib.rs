@@ -1,7 +1,7 @@
 //! Ranks and threads: messages between ranks, the threads of a rank, and what both cost.
 //!
-//! - [`exchange`], [`post`]: irregular messages during set-up, and messages that go on their way while the sender
-//!   computes;
+//! - [`exchange`], [`parcels`], [`post`]: irregular messages during set-up, those of lists of any length, and messages
+//!   that go on their way while the sender computes;
 //! - [`halo`]: ghost entries of a distributed vector, by PETSc's scatters;
 //! - [`team`]: the threads that share one rank's subdomains;
 //! - [`clock`], [`traffic`]: seconds by phase, and counters of messages and reductions.
@@ -12,6 +12,7 @@ pub mod exchange;
 pub mod halo;
 pub mod meter;
 pub mod owners;
+pub mod parcels;
 pub mod post;
 mod share;
 pub mod team;

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::checked::Scene;
+use bytemuck::{Pod, Zeroable};
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::Subdomain;
-use parallel::exchange::{exchange_words, gather_all};
+use parallel::exchange::{exchange, gather_all};
 use petsc::Session;
 
 /// The displacements of all nodes of the sides that may touch: what [`Scene::renew`] needs.
@@ -18,17 +19,23 @@ pub struct Displaced {
     nodes: FxHashMap<usize, Arc<FxHashMap<usize, [f64; 3]>>>,
 }
 
-/// Words per node: body, node, three components.
-const WORDS: usize = 5;
+/// The displacement of a node of a body.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct NodeDisplacement {
+    body: usize,
+    node: usize,
+    u: [f64; 3],
+}
 
-/// Adds the words of those of `nodes` that a subdomain has and is the owner of.
+/// Adds the displacements of those of `nodes` that a subdomain has and is the owner of.
 fn nodes_of(
     scene: &Scene,
     sub: &Subdomain,
     u: &[f64],
     scale: f64,
     nodes: &BTreeSet<usize>,
-    words: &mut Vec<u64>,
+    out: &mut Vec<NodeDisplacement>,
 ) {
     let (body, inside) = scene.place(sub.index);
     let c = body.components;
@@ -42,8 +49,11 @@ fn nodes_of(
             };
         }
         if nodes.contains(&node) && body.mesh().owner(node) == inside {
-            words.extend([sub.body as u64, node as u64]);
-            words.extend(at.map(f64::to_bits));
+            out.push(NodeDisplacement {
+                body: sub.body,
+                node,
+                u: at,
+            });
         }
     }
 }
@@ -63,13 +73,13 @@ impl Displaced {
     ) -> Displaced {
         let scale = scene.prescribed_factor(step);
         let wanted = scene.nodes_that_may_touch(|_| true);
-        let mut words = Vec::new();
+        let mut mine = Vec::new();
         for (sub, u) in local.iter().zip(u) {
             if let Some(nodes) = wanted.get(&sub.body) {
-                nodes_of(scene, sub, u, scale, nodes, &mut words);
+                nodes_of(scene, sub, u, scale, nodes, &mut mine);
             }
         }
-        Displaced::read(&gather_all(session.comm(), &words))
+        Displaced::received(gather_all(session.comm(), &mine).concat())
     }
 
     /// The displacements of the sides of some bodies, which need not be the same on all ranks. Collective.
@@ -91,8 +101,8 @@ impl Displaced {
             .iter()
             .for_each(|sub| *parts.entry(sub.body).or_default() += 1);
         let is_whole = |b: usize| parts.get(&b) == Some(&scene.bodies[b].mesh().n_subdomains());
-        let ask = bodies.iter().filter(|&&b| !is_whole(b));
-        let ask: Vec<u64> = ask.map(|&b| b as u64).collect();
+        let ask = bodies.iter().copied().filter(|&b| !is_whole(b));
+        let ask: Vec<usize> = ask.collect();
         // Who wants a body, by body: this rank, and others.
         let mut askers: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
         for &body in bodies {
@@ -100,29 +110,26 @@ impl Displaced {
         }
         for (rank, list) in gather_all(comm, &ask).into_iter().enumerate() {
             for body in list.into_iter().filter(|_| rank != session.rank()) {
-                askers.entry(body as usize).or_default().push(rank);
+                askers.entry(body).or_default().push(rank);
             }
         }
         let wanted = scene.nodes_that_may_touch(|b| askers.contains_key(&b));
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        let mut outgoing = vec![Vec::new(); session.size()];
         for (sub, u) in local.iter().zip(u) {
             let (Some(nodes), Some(ranks)) = (wanted.get(&sub.body), askers.get(&sub.body)) else {
                 continue;
             };
-            let mut words = Vec::new();
-            nodes_of(scene, sub, u, scale, nodes, &mut words);
-            ranks.iter().for_each(|&r| outgoing[r].extend(&words));
+            let mut known = Vec::new();
+            nodes_of(scene, sub, u, scale, nodes, &mut known);
+            ranks.iter().for_each(|&r| outgoing[r].extend(&known));
         }
-        Displaced::read(&exchange_words(comm, outgoing))
+        Displaced::received(exchange(comm, outgoing))
     }
 
-    fn read(received: &[Vec<u64>]) -> Displaced {
-        let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
+    fn received(list: Vec<NodeDisplacement>) -> Displaced {
         let mut nodes: FxHashMap<usize, FxHashMap<usize, [f64; 3]>> = FxHashMap::default();
-        for w in each {
-            let [body, node] = [w[0], w[1]].map(|k| k as usize);
-            let u = [2, 3, 4].map(|k| f64::from_bits(w[k]));
-            nodes.entry(body).or_default().insert(node, u);
+        for at in list {
+            nodes.entry(at.body).or_default().insert(at.node, at.u);
         }
         Displaced::new(nodes)
     }

@@ -29,7 +29,7 @@ pub fn load_part(session: &Session, path: &Path) -> Result<Scene> {
     if cyclic != is_cyclic(session)? {
         return load(session, path);
     }
-    let contact = gather_all(session.comm(), &[u64::from(scene.has_contact())]);
+    let contact = gather_all(session.comm(), &[u32::from(scene.has_contact())]);
     scene.contact_elsewhere = contact.concat().contains(&1);
     Ok(scene)
 }

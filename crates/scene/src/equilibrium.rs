@@ -5,9 +5,11 @@ use super::model::steps::Factors;
 use crate::assembly::{self, SubdomainMesh};
 use base::linalg::vec3::{cross, minus, norm};
 use base::Result;
+use bytemuck::{Pod, Zeroable};
 
 /// The resultant of forces at points.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 pub struct Wrench {
     /// Their sum.
     pub force: [f64; 3],

@@ -12,14 +12,16 @@ use super::model::steps::Factors;
 use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use base::linalg::vec3::{cross, dot, minus, norm};
+use bytemuck::{Pod, Zeroable};
 use elements::mortar::across;
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::solution::SolvedRow;
-use parallel::exchange::{exchange_words, Record};
+use parallel::exchange::exchange;
 use petsc::Session;
 
 /// The motion of two sides along each other, at nodes that touch.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 pub struct Sliding {
     /// The largest difference of their displacements along the face.
     pub largest: f64,
@@ -27,6 +29,14 @@ pub struct Sliding {
     pub over_face: f64,
     /// The largest angle by which a face with a node that touches turns, in degrees.
     pub turned: f64,
+}
+
+/// The sliding of one source by the rows that a rank has.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SourceSliding {
+    source: [usize; 2],
+    sliding: Sliding,
 }
 
 impl Sliding {
@@ -56,31 +66,16 @@ pub fn slid(
     let mut rows: Vec<SolvedRow> = touching.copied().collect();
     rows.sort_by_key(|r| r.label.source);
     let sliders = Sliders::new(scene, step, &bodies_of(&rows));
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-    let words = &mut outgoing[0];
+    let mut outgoing = vec![Vec::new(); session.size()];
     for rows in rows.chunk_by(|a, b| a.label.source == b.label.source) {
-        let source = rows[0].label.source;
-        let Sliding {
-            largest,
-            over_face,
-            turned,
-        } = sliders.of(rows, u);
-        source.pack(words);
-        words.extend([largest, over_face, turned].map(f64::to_bits));
+        let source = rows[0].label.source.code();
+        let sliding = sliders.of(rows, u);
+        outgoing[0].push(SourceSliding { source, sliding });
     }
     let mut all: BTreeMap<RowSource, Sliding> = BTreeMap::new();
-    for words in exchange_words(session.comm(), outgoing) {
-        for words in words.chunks_exact(RowSource::WORDS + 3) {
-            let (source, values) = words.split_at(RowSource::WORDS);
-            let [largest, over_face, turned] = [0, 1, 2].map(|k| f64::from_bits(values[k]));
-            let more = Sliding {
-                largest,
-                over_face,
-                turned,
-            };
-            let at = all.entry(RowSource::unpack(source)).or_default();
-            *at = at.max(more);
-        }
+    for SourceSliding { source, sliding } in exchange(session.comm(), outgoing) {
+        let at = all.entry(RowSource::of_code(source)).or_default();
+        *at = at.max(sliding);
     }
     all
 }

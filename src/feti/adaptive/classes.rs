@@ -13,7 +13,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::{Problem, Subdomain};
-use parallel::exchange::{any, exchange_words};
+use parallel::exchange::{any, exchange};
 
 /// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
 /// or from jumps that the weights alone deal with.
@@ -94,7 +94,7 @@ pub fn rough(
             }
         }
     }
-    let mut names = exchange_words(comm, outgoing).concat();
+    let mut names = exchange(comm, outgoing);
     names.sort_unstable();
     let of = |class: &Class| names.binary_search(&class.name()).is_ok();
     classes

@@ -20,7 +20,9 @@ use crate::feti::settings::Adaptive;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::{multiply, Dense};
-use parallel::exchange::{any, exchange_words, sum_all};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::{any, exchange_by_rank, sum_all};
+use parallel::parcels::Parcels;
 use parallel::team::Team;
 
 /// Finds the constraints that bring the eigenvalues of every class below τ and adds them to `jump.averages`. The
@@ -67,28 +69,28 @@ pub fn find(
     let rank = comm.rank() as usize;
     let rank_of = |s: u32| sharing.locations.rank(s);
     let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    let of = |j: usize, class: &Class| ClassSharer::new(class, problem.local[j].index as u32);
+    let (mut entries, mut names) = (Parcels::for_each_rank(comm), Parcels::for_each_rank(comm));
     for (j, list) in classes.iter().enumerate() {
         for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
-            let words = &mut outgoing[rank_of(class.sharers[0])];
-            words.extend([class.name(), problem.local[j].index as u64]);
-            pack(&part(j, class), words);
+            let (to, part) = (rank_of(class.sharers[0]), part(j, class));
+            entries[to].push(orders(&part), numbers(&part));
+            names[to].push(of(j, class), part.names);
         }
     }
-    let mut received: HashMap<(u64, u64), Part> = HashMap::new();
-    for words in exchange_words(comm, outgoing) {
-        let mut rest = &words[..];
-        while let [name, from, tail @ ..] = rest {
-            rest = tail;
-            received.insert((*name, *from), unpack(&mut rest));
-        }
+    let entries = exchange_by_rank(comm, entries);
+    let names = exchange_by_rank(comm, names);
+    let mut received: HashMap<ClassSharer, Part> = HashMap::new();
+    let entries = entries.iter().flat_map(Parcels::iter);
+    for ((orders, numbers), (of, names)) in entries.zip(names.iter().flat_map(Parcels::iter)) {
+        received.insert(of, part_of(orders, numbers, names));
     }
-    let mut here: HashMap<(u64, u64), (usize, &Class)> = HashMap::new();
+    let mut here: HashMap<ClassSharer, (usize, &Class)> = HashMap::new();
     let mut owned = Vec::new();
     for (j, list) in classes.iter().enumerate() {
         for class in list {
             let index = problem.local[j].index;
-            here.insert((class.name(), index as u64), (j, class));
+            here.insert(of(j, class), (j, class));
             if class.sharers[0] as usize == index {
                 owned.push((j, class));
             }
@@ -103,7 +105,7 @@ pub fn find(
             let next = kinds.len();
             let sharers = class.sharers.iter();
             let present: Option<Vec<_>> = sharers
-                .map(|&s| here.get(&(class.name(), u64::from(s))).copied())
+                .map(|&s| here.get(&ClassSharer::new(class, s)).copied())
                 .collect();
             let kind = present.map_or(next, |present| {
                 let key = signature(problem, jump, locals, &present);
@@ -118,7 +120,7 @@ pub fn find(
     let of_kind = team.map(kinds.len(), |i| {
         let (j, class) = kinds[i];
         let own = |&s: &u32| {
-            let key = (class.name(), u64::from(s));
+            let key = ClassSharer::new(class, s);
             match here.get(&key) {
                 Some((j, class)) => part(*j, class),
                 None => received[&key].clone(),
@@ -129,36 +131,30 @@ pub fn find(
     });
     let found: Vec<&Vec<Vec<f64>>> = kind_of.iter().map(|&k| &of_kind[k]).collect();
 
-    // [to, class, k, k functionals] to every sharer
+    // The functionals, one after the other, go to every sharer.
     let mut per_body = vec![0.0; problem.n_bodies];
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    let mut outgoing = Parcels::for_each_rank(comm);
     for ((j, class), list) in owned.iter().zip(found) {
         per_body[problem.local[*j].body] += list.len() as f64;
         for &to in class.sharers.iter().filter(|_| !list.is_empty()) {
-            let words = &mut outgoing[rank_of(to)];
-            words.extend([u64::from(to), class.name(), list.len() as u64]);
-            words.extend(list.iter().flatten().map(|v| v.to_bits()));
+            let values = list.iter().flatten().copied();
+            outgoing[rank_of(to)].push(ClassSharer::new(class, to), values);
         }
     }
-    let answers = exchange_words(comm, outgoing);
+    let answers = exchange_by_rank(comm, outgoing);
     let mut added: Vec<(usize, Average)> = Vec::new();
-    for words in answers {
-        let mut rest = &words[..];
-        while let [to, name, k, tail @ ..] = rest {
-            let (j, class) = here[&(*name, *to)];
-            let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
-            let interface = &locals[j].gamma().interface;
-            let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
-            added.extend(functionals.map(|(values, &key)| {
-                let average = Average {
-                    key,
-                    dofs: class.at.iter().map(|&i| interface[i]).collect(),
-                    weights: Some(values.iter().map(|&w| f64::from_bits(w)).collect()),
-                };
-                (j, average)
-            }));
-            rest = tail;
-        }
+    for (to, values) in answers.iter().flat_map(Parcels::iter) {
+        let (j, class) = here[&to];
+        let interface = &locals[j].gamma().interface;
+        let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
+        added.extend(functionals.map(|(values, &key)| {
+            let average = Average {
+                key,
+                dofs: class.at.iter().map(|&i| interface[i]).collect(),
+                weights: Some(values.to_vec()),
+            };
+            (j, average)
+        }));
     }
     drop(here);
     for (j, average) in added {
@@ -280,40 +276,49 @@ fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
     out
 }
 
-fn pack(part: &Part, words: &mut Vec<u64>) {
-    for m in [&part.a, &part.t, &part.psi, &part.sigma] {
-        words.extend([m.rows as u64, m.cols as u64]);
-        words.extend(m.data.iter().map(|v| v.to_bits()));
-    }
-    words.extend(part.stiff.iter().map(|v| v.to_bits()));
-    words.extend(part.names.iter().flatten());
+/// A class and one of its sharers.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Pod, Zeroable)]
+struct ClassSharer {
+    class: u64,
+    subdomain: u64,
 }
 
-fn unpack(words: &mut &[u64]) -> Part {
-    let take = |words: &mut &[u64], n: usize| {
-        let (head, tail) = words.split_at(n);
-        *words = tail;
-        head.to_vec()
-    };
-    let floats = |w: Vec<u64>| -> Vec<f64> { w.into_iter().map(f64::from_bits).collect() };
-    let matrix = |words: &mut &[u64]| {
-        let size = take(words, 2);
-        let (rows, cols) = (size[0] as usize, size[1] as usize);
-        let data = floats(take(words, rows * cols));
+impl ClassSharer {
+    fn new(class: &Class, subdomain: u32) -> ClassSharer {
+        ClassSharer {
+            class: class.name(),
+            subdomain: subdomain.into(),
+        }
+    }
+}
+
+/// The orders N, n and n_Π of the matrices of a part.
+fn orders(part: &Part) -> [usize; 3] {
+    [&part.a, &part.t, &part.sigma].map(|m| m.rows)
+}
+
+/// The part with these orders, [`numbers`] and names.
+fn part_of([jumps, n, n_pi]: [usize; 3], mut numbers: &[f64], names: &[[u64; 2]]) -> Part {
+    let mut matrix = |rows: usize, cols: usize| {
+        let (data, rest) = numbers.split_at(rows * cols);
+        numbers = rest;
+        let data = data.to_vec();
         Dense { rows, cols, data }
     };
-    let (a, t) = (matrix(words), matrix(words));
-    let (psi, sigma) = (matrix(words), matrix(words));
-    let n_pi = sigma.rows;
     Part {
-        a,
-        t,
-        psi,
-        sigma,
-        stiff: floats(take(words, n_pi)),
-        names: take(words, 2 * n_pi)
-            .chunks_exact(2)
-            .map(|w| [w[0], w[1]])
-            .collect(),
+        a: matrix(jumps, jumps),
+        t: matrix(n, n),
+        psi: matrix(n, n_pi),
+        sigma: matrix(n_pi, n_pi),
+        stiff: numbers.to_vec(),
+        names: names.to_vec(),
     }
+}
+
+/// The entries of the matrices of a part, and its stiffnesses.
+fn numbers(part: &Part) -> impl Iterator<Item = f64> + '_ {
+    let matrices = [&part.a, &part.t, &part.psi, &part.sigma];
+    let entries = matrices.into_iter().flat_map(|m| &m.data);
+    entries.chain(&part.stiff).copied()
 }

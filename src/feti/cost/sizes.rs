@@ -7,7 +7,7 @@ use super::{choice, forms};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::interface::{entities, location};
 use crate::feti::jump::operator::Jump;
-use crate::feti::primal::kernel;
+use crate::feti::primal::kernel::{self, SentFactors};
 use crate::feti::projector::freedom::FreeMotion;
 use crate::feti::projector::planned::free_motions;
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
@@ -16,7 +16,8 @@ use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::dense::Dense;
-use parallel::exchange::{exchange_words, highest, sum_all};
+use parallel::exchange::{highest, sum_all};
+use parallel::parcels::Parcels;
 use parallel::team::Team;
 use petsc::Session;
 
@@ -144,25 +145,13 @@ impl Sizes {
 
 /// Every body's kernel as combinations of its candidates, from its matrices; a body without candidates counts as held.
 fn kernels(comm: &SimpleCommunicator, problem: &Problem) -> Vec<Dense> {
-    let mut words = Vec::new();
+    let mut mine = SentFactors::default();
     for sub in &problem.local {
-        let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
-        let factor = kernel::motion_factors(&sub.k, columns);
-        words.extend([sub.body as u64, columns.len() as u64]);
-        words.extend(factor.data.iter().map(|v| v.to_bits()));
+        kernel::push_factors(&mut mine, sub);
     }
-    let all = exchange_words(comm, vec![words; comm.size() as usize]).concat();
     let mut factors: Vec<Vec<Dense>> = vec![Vec::new(); problem.n_bodies];
-    let mut rest = &all[..];
-    while let [body, k, tail @ ..] = rest {
-        let k = *k as usize;
-        let (data, tail) = tail.split_at(2 * k * k);
-        factors[*body as usize].push(Dense {
-            rows: 2 * k,
-            cols: k,
-            data: data.iter().map(|&w| f64::from_bits(w)).collect(),
-        });
-        rest = tail;
+    for (body, entries) in mine.gather_all(comm).iter().flat_map(Parcels::iter) {
+        factors[body].push(kernel::received_factors(entries));
     }
     let kernel = |f: &Vec<Dense>| kernel::null_combinations(f);
     factors.iter().map(kernel).collect()

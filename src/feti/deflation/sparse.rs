@@ -54,13 +54,13 @@ pub fn product(
     let n = starts.len() - 1;
     let mut blocks: Vec<(usize, usize, Dense)> = Vec::new();
     w.products(fw, |a, b, part| blocks.push((a, b, part.clone())));
-    let pair = |a: usize, b: usize| (a as u64) << 32 | b as u64;
+    let pair = |a: usize, b: usize| [a as u32, b as u32];
     let both = blocks
         .iter()
         .flat_map(|&(a, b, _)| [pair(a, b), pair(b, a)]);
     let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
-    for pair in gather_all(comm, &distinct(both)).concat() {
-        lists[(pair >> 32) as usize].push(pair as u32);
+    for [a, b] in gather_all(comm, &distinct(both)).concat() {
+        lists[a as usize].push(b);
     }
     let mut lists: Vec<Vec<u32>> = lists.into_iter().map(distinct).collect();
     let new = |lists: &[Vec<u32>]| {

@@ -9,7 +9,7 @@ use mpi::traits::Communicator;
 use std::hash::{BuildHasherDefault, Hasher};
 
 use crate::substructures::Problem;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
 
 /// Multiplicative hashing: dof numbers are not chosen by an adversary.
 #[derive(Debug, Default, Clone, Copy)]
@@ -109,7 +109,7 @@ pub fn candidates(
     let spread = |dofs: &mut dyn Iterator<Item = u64>| {
         let mut lists: Vec<Vec<u64>> = vec![Vec::new(); size];
         dofs.for_each(|dof| lists[home(dof)].push(dof));
-        exchange_words(comm, lists)
+        exchange_by_rank(comm, lists)
     };
     let named = spread(&mut in_rows());
     let held = spread(&mut problem.local.iter().flat_map(|s| s.dofs.iter().copied()));
@@ -124,7 +124,7 @@ pub fn candidates(
         };
         asked.chunks(64).map(word).collect()
     };
-    let answers: Vec<Vec<u64>> = exchange_words(comm, held.iter().map(answer).collect());
+    let answers: Vec<Vec<u64>> = exchange_by_rank(comm, held.iter().map(answer).collect());
     let mut next = vec![0usize; size];
     select(&mut |dof| {
         let from = home(dof);

@@ -12,7 +12,8 @@ use super::sharing::Sharing;
 use crate::feti::settings::Primal;
 use crate::substructures::{Entity, Problem, Subdomain};
 use crate::{Error, Result};
-use parallel::exchange::exchange_words;
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::exchange_by_rank;
 
 /// A primal constraint that several subdomains of a body share: the mean over some dofs, or another functional of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +26,17 @@ pub struct Average {
     pub weights: Option<Vec<f64>>,
 }
 
-/// Words of a report: key, body, subdomain, number of dofs, hash of the body dofs.
-const WORDS: usize = 5;
+/// An entity as one of its subdomains lists it.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Pod, Zeroable)]
+struct Listed {
+    key: u64,
+    body: usize,
+    subdomain: usize,
+    n_dofs: usize,
+    /// A hash of the body dofs.
+    hash: u64,
+}
 
 /// The entities of a subdomain that the user's choice makes primal.
 pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> {
@@ -42,41 +52,35 @@ pub fn averages(
     primal: Primal,
 ) -> Result<Vec<Vec<Average>>> {
     let size = comm.size() as usize;
-    let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut reports: Vec<Vec<Listed>> = vec![Vec::new(); size];
     for sub in &problem.local {
         for entity in chosen(sub, primal) {
             let mut state = DefaultHasher::new();
             for &i in &entity.dofs {
                 sub.dofs[i as usize].hash(&mut state);
             }
-            reports[(entity.key % size as u64) as usize].extend([
-                entity.key,
-                sub.body as u64,
-                sub.index as u64,
-                entity.dofs.len() as u64,
-                state.finish(),
-            ]);
+            reports[(entity.key % size as u64) as usize].push(Listed {
+                key: entity.key,
+                body: sub.body,
+                subdomain: sub.index,
+                n_dofs: entity.dofs.len(),
+                hash: state.finish(),
+            });
         }
     }
-    let received = exchange_words(comm, reports);
-    let mut all: Vec<&[u64]> = received
-        .iter()
-        .flat_map(|w| w.chunks_exact(WORDS))
-        .collect();
+    let received = exchange_by_rank(comm, reports);
+    let mut all = received.concat();
     all.sort_unstable();
     let agreed = all
-        .chunk_by(|a, b| a[0] == b[0])
+        .chunk_by(|a, b| a.key == b.key)
         .try_for_each(|group| agree(problem, group));
-    let count = |report: &[u64]| {
-        let start = all.partition_point(|r| r[0] < report[0]);
-        let same = all[start..].iter().take_while(|r| r[0] == report[0]);
-        same.count() as u64
+    let count = |report: &Listed| {
+        let start = all.partition_point(|r| r.key < report.key);
+        let same = all[start..].iter().take_while(|r| r.key == report.key);
+        same.count()
     };
-    let replies = received
-        .iter()
-        .map(|w| w.chunks_exact(WORDS).map(count).collect())
-        .collect();
-    let answers: Vec<Vec<u64>> = exchange_words(comm, replies);
+    let replies = received.iter().map(|list| list.iter().map(count).collect());
+    let answers: Vec<Vec<usize>> = exchange_by_rank(comm, replies.collect());
     agreed?;
 
     let mut next = vec![0; size];
@@ -85,7 +89,7 @@ pub fn averages(
         let mut mine = Vec::new();
         for entity in chosen(sub, primal) {
             let home = (entity.key % size as u64) as usize;
-            let count = answers[home][next[home]] as usize;
+            let count = answers[home][next[home]];
             next[home] += 1;
             mine.extend(average(problem, sharing, sub, entity, count)?);
         }
@@ -172,14 +176,16 @@ fn valid(problem: &Problem, sub: &Subdomain, primal: Primal) -> Result<()> {
 }
 
 /// Checks that the subdomains agree on an entity that they list under one key.
-fn agree(problem: &Problem, group: &[&[u64]]) -> Result<()> {
-    let first = group[0];
-    let who = |r: &[u64]| name(problem, r[2] as usize, r[1] as usize);
+fn agree(problem: &Problem, group: &[Listed]) -> Result<()> {
+    let first = &group[0];
+    let who = |r: &Listed| name(problem, r.subdomain, r.body);
     for other in &group[1..] {
-        if first[1] == other[1] && first[2] != other[2] && first[3..] == other[3..] {
+        let twice = first.subdomain == other.subdomain;
+        let dofs = |r: &Listed| (r.body, r.n_dofs, r.hash);
+        if !twice && dofs(first) == dofs(other) {
             continue;
         }
-        let what = if first[2] == other[2] {
+        let what = if twice {
             "twice"
         } else {
             "with different dofs"
@@ -187,7 +193,7 @@ fn agree(problem: &Problem, group: &[&[u64]]) -> Result<()> {
         return Err(Error::input(format!(
             "entity {} is listed by {} and by {} {what}, \
              expected the same body dofs in the same order, once in each subdomain of one body",
-            first[0],
+            first.key,
             who(first),
             who(other)
         )));

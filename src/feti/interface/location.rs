@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use crate::substructures::Problem;
 use crate::{Error, Result};
-use parallel::exchange::{any, exchange_words};
+use parallel::exchange::{any, exchange, exchange_by_rank};
 
 /// Where a subdomain is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,24 +66,20 @@ pub struct Home {
 
 /// The homes of the bodies of this rank. Collective.
 pub fn homes(comm: &SimpleCommunicator, problem: &Problem) -> FxHashMap<usize, Home> {
-    // Messages to the rendezvous rank: [body, lowest subdomain, number of subdomains].
     let size = comm.size() as usize;
-    let mut own: Vec<(u64, u64)> = problem
-        .local
-        .iter()
-        .map(|s| (s.body as u64, s.index as u64))
-        .collect();
+    let own = problem.local.iter().map(|s| (s.body, s.index));
+    let mut own: Vec<(usize, usize)> = own.collect();
     own.sort_unstable();
-    let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut reports: Vec<Vec<[usize; 3]>> = vec![Vec::new(); size];
     for group in own.chunk_by(|a, b| a.0 == b.0) {
         let (body, lowest) = group[0];
-        reports[body as usize % size].extend([body, lowest, group.len() as u64]);
+        reports[body % size].push([body, lowest, group.len()]);
     }
-    let received = exchange_words(comm, reports);
-    let mut found: FxHashMap<u64, (u64, Home)> = FxHashMap::default();
-    for (rank, words) in (0..).zip(&received) {
-        for report in words.chunks_exact(3) {
-            let (body, lowest, is_cut) = (report[0], report[1], report[2] > 1);
+    let received = exchange_by_rank(comm, reports);
+    let mut found: FxHashMap<usize, (usize, Home)> = FxHashMap::default();
+    for (rank, parts) in (0..).zip(&received) {
+        for &[body, lowest, subdomains] in parts {
+            let is_cut = subdomains > 1;
             let new = (lowest, Home { rank, is_cut });
             let known = found.entry(body);
             let known = known.and_modify(|old| {
@@ -94,21 +90,19 @@ pub fn homes(comm: &SimpleCommunicator, problem: &Problem) -> FxHashMap<usize, H
             known.or_insert(new);
         }
     }
-    let answer = |words: &Vec<u64>| {
-        let bodies = words.chunks_exact(3).map(|report| report[0]);
-        let answers = bodies.flat_map(|body| {
-            let home = found[&body].1;
-            [body, u64::from(home.rank), u64::from(home.is_cut)]
-        });
-        answers.collect()
+    let home = |&[body, ..]: &[usize; 3]| {
+        let Home { rank, is_cut } = found[&body].1;
+        [body, rank as usize, is_cut.into()]
     };
-    let answers = exchange_words(comm, received.iter().map(answer).collect()).concat();
-    let home = |w: &[u64]| Home {
-        rank: w[1] as u32,
-        is_cut: w[2] == 1,
+    let answers = received
+        .iter()
+        .map(|parts| parts.iter().map(home).collect());
+    let home = |[body, rank, cut]: [usize; 3]| {
+        let (rank, is_cut) = (rank as u32, cut != 0);
+        (body, Home { rank, is_cut })
     };
-    let all = answers.chunks_exact(3).map(|w| (w[0] as usize, home(w)));
-    all.collect()
+    let answers = exchange(comm, answers.collect()).into_iter();
+    answers.map(home).collect()
 }
 
 /// Whether each subdomain number below n_subdomains is used once, and each body exists. Each rank looks at a part of
@@ -119,7 +113,7 @@ pub fn homes(comm: &SimpleCommunicator, problem: &Problem) -> FxHashMap<usize, H
 pub fn check(comm: &SimpleCommunicator, problem: &Problem) -> Result<()> {
     let (size, n) = (comm.size() as usize, problem.n_subdomains);
     let mut found = Ok(());
-    let mut numbers: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut numbers: Vec<Vec<usize>> = vec![Vec::new(); size];
     for sub in &problem.local {
         if sub.index >= n {
             found = Err(twice_or_above(sub.index, n));
@@ -129,19 +123,19 @@ pub fn check(comm: &SimpleCommunicator, problem: &Problem) -> Result<()> {
                 sub.index, sub.body, problem.n_bodies
             )));
         }
-        numbers[sub.index % size].push(sub.index as u64);
+        numbers[sub.index % size].push(sub.index);
     }
-    let mut all = exchange_words(comm, numbers).concat();
-    all.retain(|&index| index < n as u64);
+    let mut all = exchange(comm, numbers);
+    all.retain(|&index| index < n);
     all.sort_unstable();
     let twice = all.windows(2).find(|w| w[0] == w[1]);
-    found = found.and(twice.map_or(Ok(()), |w| Err(twice_or_above(w[0] as usize, n))));
+    found = found.and(twice.map_or(Ok(()), |w| Err(twice_or_above(w[0], n))));
     // A number that is used twice usually leaves another one unused, which says less.
     if any(comm, found.is_err()) {
         return found;
     }
     let expected = (comm.rank() as usize..n).step_by(size);
-    let present = all.iter().map(|&index| Some(index as usize));
+    let present = all.iter().map(|&index| Some(index));
     let present = present.chain(std::iter::repeat(None));
     match expected.zip(present).find(|(e, p)| Some(*e) != *p) {
         Some((missing, _)) => Err(Error::input(format!("no rank holds subdomain {missing}"))),

@@ -16,7 +16,8 @@ use crate::feti::settings::Primal;
 use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
-use parallel::exchange::{exchange, exchange_words, Record};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::{exchange, exchange_by_rank};
 
 /// One subdomain's instance of a body dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,44 +51,16 @@ pub struct Sharing {
 }
 
 /// A copy of a dof, and where its subdomain is.
-#[derive(Debug, Clone, Copy)]
-struct Report {
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct DofCopy {
     dof: u64,
-    copy: Copy,
-    at: Location,
-}
-
-impl Record for Report {
-    const WORDS: usize = 4;
-    fn pack(&self, out: &mut Vec<u64>) {
-        let both = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
-        let Report { dof, copy: c, at } = self;
-        // MPI numbers ranks by ints, so the highest bit is free.
-        let rank = u32::from(c.primal) << 31 | at.rank;
-        out.extend([
-            *dof,
-            both(rank, c.subdomain),
-            both(at.body, c.local),
-            c.weight.to_bits(),
-        ]);
-    }
-    fn unpack(w: &[u64]) -> Self {
-        let copy = Copy {
-            subdomain: w[1] as u32,
-            local: w[2] as u32,
-            primal: w[1] >> 63 == 1,
-            weight: f64::from_bits(w[3]),
-        };
-        let at = Location {
-            rank: (w[1] >> 32) as u32 & i32::MAX as u32,
-            body: (w[2] >> 32) as u32,
-        };
-        Report {
-            dof: w[0],
-            copy,
-            at,
-        }
-    }
+    subdomain: u32,
+    local: u32,
+    weight: f64,
+    rank: u32,
+    body: u32,
+    primal: u64,
 }
 
 impl Sharing {
@@ -101,37 +74,35 @@ impl Sharing {
     ) -> Result<Sharing> {
         let size = comm.size() as usize;
         let home = |dof: u64| (dof % size as u64) as usize;
-        let mut reports: Vec<Vec<Report>> = vec![Vec::new(); size];
+        let mut reports: Vec<Vec<DofCopy>> = vec![Vec::new(); size];
         let possible = candidates(comm, problem, &home);
         for ((sub, weight), possible) in problem.local.iter().zip(weights).zip(&possible) {
             let mut primal = vec![false; sub.dofs.len()];
-            let at = Location {
-                rank: comm.rank() as u32,
-                body: sub.body as u32,
-            };
             if constraints.vertices {
                 sub.primal.iter().for_each(|&i| primal[i as usize] = true);
             }
             for &i in possible {
                 let (dof, i) = (sub.dofs[i as usize], i as usize);
-                let copy = Copy {
+                reports[home(dof)].push(DofCopy {
+                    dof,
                     subdomain: sub.index as u32,
                     local: i as u32,
-                    primal: primal[i],
                     weight: weight[i],
-                };
-                reports[home(dof)].push(Report { dof, copy, at });
+                    rank: comm.rank() as u32,
+                    body: sub.body as u32,
+                    primal: primal[i].into(),
+                });
             }
         }
-        let mut all: Vec<Report> = exchange(comm, reports);
-        all.sort_unstable_by_key(|r| (r.dof, r.copy.subdomain, r.copy.local));
+        let mut all = exchange(comm, reports);
+        all.sort_unstable_by_key(|c| (c.dof, c.subdomain, c.local));
 
         // Shared dofs go back to all ranks that hold a copy.
-        let mut replies: Vec<Vec<Report>> = vec![Vec::new(); size];
+        let mut replies: Vec<Vec<DofCopy>> = vec![Vec::new(); size];
         let mut ranks = Vec::new();
         for group in all.chunk_by(|a, b| a.dof == b.dof).filter(|g| g.len() > 1) {
             ranks.clear();
-            ranks.extend(group.iter().map(|r| r.at.rank));
+            ranks.extend(group.iter().map(|c| c.rank));
             ranks.sort_unstable();
             ranks.dedup();
             for &r in &ranks {
@@ -162,7 +133,7 @@ impl Sharing {
             list.retain(|dof| !sharing.copies.contains_key(dof));
             list
         });
-        let answers: Vec<Vec<Report>> = exchange_words(comm, queries.collect())
+        let answers: Vec<Vec<DofCopy>> = exchange_by_rank(comm, queries.collect())
             .iter()
             .map(|asked| {
                 let find = |&dof: &u64| {
@@ -188,11 +159,17 @@ impl Sharing {
         Ok(sharing)
     }
 
-    fn absorb(&mut self, list: Vec<Report>) {
+    fn absorb(&mut self, list: Vec<DofCopy>) {
         for group in list.chunk_by(|a, b| a.dof == b.dof) {
-            let note = |r: &Report| {
-                self.locations.insert(r.copy.subdomain, r.at);
-                r.copy
+            let note = |c: &DofCopy| {
+                let (rank, body) = (c.rank, c.body);
+                self.locations.insert(c.subdomain, Location { rank, body });
+                Copy {
+                    subdomain: c.subdomain,
+                    local: c.local,
+                    primal: c.primal != 0,
+                    weight: c.weight,
+                }
             };
             let copies = group.iter().map(note).collect();
             self.copies.insert(group[0].dof, copies);

@@ -12,7 +12,7 @@ use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
-use parallel::exchange::Record;
+use bytemuck::{Pod, Zeroable};
 
 /// B of a block.
 #[derive(Debug)]
@@ -52,12 +52,13 @@ struct Dof {
 }
 
 /// One entry of B and B_D on its way to the rank of its subdomain.
-#[derive(Clone)]
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
 pub(crate) struct Entry {
-    pub row: u64,
+    pub row: u32,
+    contact: u32,
     pub subdomain: u32,
     pub local: u32,
-    pub contact: bool,
     /// Entry of B, whether or not the row holds.
     pub full: f64,
     /// Entry of Z B.
@@ -66,39 +67,22 @@ pub(crate) struct Entry {
     pub bd: f64,
 }
 
-impl Record for Entry {
-    const WORDS: usize = 5;
-    fn pack(&self, out: &mut Vec<u64>) {
-        let place = u64::from(self.subdomain) << 32 | u64::from(self.local);
-        let row = self.row << 1 | u64::from(self.contact);
-        let values = [self.full, self.b, self.bd].map(f64::to_bits);
-        out.extend([row, place]);
-        out.extend(values);
-    }
-    fn unpack(w: &[u64]) -> Self {
-        Entry {
-            row: w[0] >> 1,
-            subdomain: (w[1] >> 32) as u32,
-            local: (w[1] & u64::from(u32::MAX)) as u32,
-            contact: w[0] & 1 == 1,
-            full: f64::from_bits(w[2]),
-            b: f64::from_bits(w[3]),
-            bd: f64::from_bits(w[4]),
-        }
-    }
-}
-
 impl Entry {
-    pub fn new(row: u64, copy: &Copy, contact: bool, [full, b, bd]: [f64; 3]) -> Entry {
+    pub fn new(row: u32, copy: &Copy, contact: bool, [full, b, bd]: [f64; 3]) -> Entry {
         Entry {
             row,
+            contact: contact.into(),
             subdomain: copy.subdomain,
             local: copy.local,
-            contact,
             full,
             b,
             bd,
         }
+    }
+
+    /// Whether it is in a row of B_gl.
+    pub fn is_contact(&self) -> bool {
+        self.contact != 0
     }
 }
 
@@ -203,7 +187,7 @@ impl Block {
         // same on all of them, as a function in W̃ must be.
         let (start, dofs, copies) = (self.rows.start, &self.dofs, &self.copies);
         let mut send = |r: usize, j: usize, value: f64, bd: f64| {
-            let row = (first + start + r) as u64;
+            let row = (first + start + r) as u32;
             for copy in copies_of(dofs, copies, j) {
                 let full = value * copy.weight / dofs[j].weight;
                 let b = if active[r] { full } else { 0.0 };

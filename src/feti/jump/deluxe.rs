@@ -12,7 +12,6 @@
 use std::collections::{BTreeMap, HashMap};
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use super::columns::JumpEntry;
 use super::operator::Jump;
@@ -21,7 +20,8 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::Problem;
 use base::linalg::dense::{self, Dense, Scratch};
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
@@ -40,35 +40,24 @@ pub fn apply(
             classes::of(&problem.local[j], sharing, &locals[j], |i| !between[i])
         })
         .collect();
-    // [to, from, group, m², entries] to every sharer
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    // The entries of S go to every sharer.
+    let mut outgoing = Parcels::for_each_rank(comm);
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
             let s = locals[j].s_on(&group.at);
             for &to in &group.sharers {
-                let list = &mut outgoing[sharing.locations.rank(to)];
-                list.extend([
-                    u64::from(to),
-                    sub.index as u64,
-                    group.name(),
-                    s.data.len() as u64,
-                ]);
-                list.extend(s.data.iter().map(|v| v.to_bits()));
+                let (of, entries) = ([to.into(), sub.index as u64, group.name()], s.data.iter());
+                outgoing[sharing.locations.rank(to)].push(of, entries.copied());
             }
         }
     }
     let mut received: HashMap<(u64, u64), BTreeMap<u64, Vec<f64>>> = HashMap::new();
-    for words in exchange_words(comm, outgoing) {
-        let mut rest = &words[..];
-        while let [to, from, name, n, tail @ ..] = rest {
-            let (data, tail) = tail.split_at(*n as usize);
-            let data = data.iter().map(|&w| f64::from_bits(w)).collect();
-            received
-                .entry((*to, *name))
-                .or_default()
-                .insert(*from, data);
-            rest = tail;
-        }
+    for ([to, from, group], data) in exchange_by_rank(comm, outgoing)
+        .iter()
+        .flat_map(Parcels::iter)
+    {
+        let of_group = received.entry((to, group)).or_default();
+        of_group.insert(from, data.to_vec());
     }
     let mut more = vec![Vec::new(); locals.len()];
     for (j, sub) in problem.local.iter().enumerate() {

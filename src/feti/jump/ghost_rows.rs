@@ -21,10 +21,9 @@ impl GhostRows {
         let mut own = vec![None; n_owned];
         let mut others = Vec::new();
         for e in entries {
-            let row = e.row as u32;
-            match own.get_mut(row.wrapping_sub(first) as usize) {
-                Some(seen) => *seen = Some((0, e.contact)),
-                None => others.push((row, e.contact)),
+            match own.get_mut(e.row.wrapping_sub(first) as usize) {
+                Some(seen) => *seen = Some((0, e.is_contact())),
+                None => others.push((e.row, e.is_contact())),
             }
         }
         let others = distinct(others);

@@ -118,7 +118,7 @@ impl Jump {
         let n_owned = n_owned_local + problem.rows.len();
         let (first, n_global) = offsets(comm, n_owned);
 
-        let mut row = first as u64;
+        let mut row = first as u32;
         for group in &own_local {
             let weights: Vec<f64> = group.iter().map(|c| c.weight).collect();
             for a in 0..group.len() {
@@ -221,11 +221,11 @@ impl Jump {
         let numbered = problem.local.iter().zip(0..);
         let here: FxHashMap<u32, u32> = numbered.map(|(s, j)| (s.index as u32, j)).collect();
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
-        let of_contact = entries.iter().filter(|e| e.contact).count();
+        let of_contact = entries.iter().filter(|e| e.is_contact()).count();
         let mut places: Vec<(u32, Place)> = Vec::with_capacity(of_contact);
         self.columns = JumpEntries::with_room(entries.len(), of_contact);
         for (k, e) in (0..).zip(&entries) {
-            let row = seen.place(e.row as u32);
+            let row = seen.place(e.row);
             dealt[here[&e.subdomain] as usize].push((e.local, row, k));
         }
         for (j, sub) in problem.local.iter().enumerate() {
@@ -241,7 +241,7 @@ impl Jump {
                 let e = &entries[k as usize];
                 let (at, b, bd) = (e.local, e.b, e.bd);
                 let k = self.columns.push(JumpEntry { row, at, b, bd });
-                if e.contact {
+                if e.is_contact() {
                     self.columns.push_contact(k, e.full);
                     let (subdomain, dof) = (j as u32, e.local);
                     let place = Place {
@@ -253,7 +253,7 @@ impl Jump {
                 }
                 let vertex = sharing.vertices && sub.primal.binary_search(&e.local).is_ok();
                 let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
-                if e.contact && vertex && alone && pinned {
+                if e.is_contact() && vertex && alone && pinned {
                     corners.push(e.local);
                 } else {
                     dual.push(e.local);

@@ -78,9 +78,8 @@ impl Jump {
         for entry in exchange(comm, outgoing) {
             let j = self.local_index(entry.subdomain);
             // Entries of a row follow each other.
-            let row = entry.row as u32;
-            if self.ghosts.get(ghost) != Some(&row) {
-                let found = self.ghosts.binary_search(&row);
+            if self.ghosts.get(ghost) != Some(&entry.row) {
+                let found = self.ghosts.binary_search(&entry.row);
                 ghost = found.expect("rows of a block are ghosts of its subdomains");
             }
             let k = self.places.entry(ghost, j as u32, entry.local);

@@ -17,7 +17,7 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::sorted::distinct;
-use parallel::exchange::{exchange_words, offsets};
+use parallel::exchange::{exchange_by_rank, offsets};
 use parallel::halo::Halo;
 use petsc::Vec as PetscVec;
 
@@ -91,17 +91,17 @@ impl Averaging {
         let owner = |dof: &u64| rank_of(&sharing.shared(*dof)[0]);
         let mut asked: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         far.iter().for_each(|dof| asked[owner(dof)].push(*dof));
-        let received = exchange_words(comm, asked);
+        let received = exchange_by_rank(comm, asked);
         let own = distinct(received.concat());
         let (first, _) = offsets(comm, own.len());
-        let number = |dof: &u64| (first + own.binary_search(dof).expect("it was asked for")) as u64;
+        let number = |dof: &u64| (first + own.binary_search(dof).expect("it was asked for")) as u32;
         let replies = received.iter().map(|l| l.iter().map(number).collect());
-        let answers = exchange_words(comm, replies.collect());
+        let answers: Vec<Vec<u32>> = exchange_by_rank(comm, replies.collect());
         let mut next = vec![0; answers.len()];
         let numbered = far.iter().map(|dof| {
             let from = owner(dof);
             next[from] += 1;
-            (answers[from][next[from] - 1] as u32, *dof)
+            (answers[from][next[from] - 1], *dof)
         });
         let mut ghosts: Vec<(u32, u64)> = numbered.collect();
         ghosts.sort_unstable();

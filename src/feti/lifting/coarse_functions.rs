@@ -15,7 +15,8 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
 
 /// The recipe of Z_c on one subdomain.
 pub(crate) struct Recipe {
@@ -96,7 +97,9 @@ pub(crate) fn recipes(
         }
         lists
     });
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    // The numbers of the columns and then the local dofs of the rows; the entries, column after column.
+    let mut numbers = Parcels::for_each_rank(comm);
+    let mut values = Parcels::for_each_rank(comm);
     let mut received: Vec<Vec<Contribution>> = locals.iter().map(|_| Vec::new()).collect();
     for (j, lists) in given.into_iter().enumerate() {
         let from = problem.local[j].index as u64;
@@ -112,41 +115,35 @@ pub(crate) fn recipes(
                     source: Source::Local(j),
                 });
             } else {
-                let words = &mut outgoing[rank];
                 let columns = columns(j);
-                words.extend([u64::from(to), from, columns.len() as u64, rows.len() as u64]);
-                words.extend(columns.iter().map(|&c| u64::from(c)));
-                for (dof, i, factor) in rows {
-                    words.push(u64::from(dof));
-                    let values = (0..columns.len()).map(|c| functions[j].psi.get(i as usize, c));
-                    words.extend(values.map(|v| (factor * v).to_bits()));
-                }
+                let n = columns.len();
+                let dofs = rows.iter().map(|row| row.0);
+                let psi = &functions[j].psi;
+                let entries = (0..n).flat_map(|c| rows.iter().map(move |row| (row, c)));
+                let entries = entries.map(|(row, c)| row.2 * psi.get(row.1 as usize, c));
+                values[rank].push((), entries);
+                numbers[rank].push([to.into(), from, n as u64], columns.into_iter().chain(dofs));
             }
         }
     }
-    for words in exchange_words(comm, outgoing) {
-        let mut rest = &words[..];
-        while let [to, from, n, m, tail @ ..] = rest {
-            let j = jump.local_index(*to as u32);
-            let (n, m) = (*n as usize, *m as usize);
-            let (columns, tail) = tail.split_at(n);
-            let (sent, tail) = tail.split_at(m * (n + 1));
-            let mut values = Dense::zeros(m, n);
-            let mut rows = Vec::with_capacity(m);
-            for (r, w) in sent.chunks_exact(n + 1).enumerate() {
-                rows.push((places[j][w[0] as usize], r as u32, 1.0));
-                for (c, &v) in w[1..].iter().enumerate() {
-                    values.set(r, c, f64::from_bits(v));
-                }
-            }
-            received[j].push(Contribution {
-                from: *from,
-                columns: columns.iter().map(|&c| c as u32).collect(),
-                rows,
-                source: Source::Remote(values),
-            });
-            rest = tail;
-        }
+    let numbers = exchange_by_rank(comm, numbers);
+    let values = exchange_by_rank(comm, values);
+    let pairs = numbers.iter().flat_map(Parcels::iter);
+    for (([to, from, n], numbers), ((), values)) in pairs.zip(values.iter().flat_map(Parcels::iter))
+    {
+        let j = jump.local_index(to as u32);
+        let (columns, dofs) = numbers.split_at(n as usize);
+        let row = |(&dof, r): (&u32, u32)| (places[j][dof as usize], r, 1.0);
+        received[j].push(Contribution {
+            from,
+            columns: columns.to_vec(),
+            rows: dofs.iter().zip(0..).map(row).collect(),
+            source: Source::Remote(Dense {
+                rows: dofs.len(),
+                cols: columns.len(),
+                data: values.to_vec(),
+            }),
+        });
     }
     let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
         // Sorted, so that the order of additions does not depend on the ranks.

@@ -28,11 +28,12 @@ use super::stored::Stored;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::operators::work::{Columns, Work};
+use crate::feti::primal::matrix::Blocks;
 use crate::feti::settings::CoarseFunctions;
 use crate::substructures::Problem;
 use crate::Result;
 use parallel::clock::{self, Phase};
-use parallel::exchange::{any, exchange_words, sum_all};
+use parallel::exchange::{any, sum_all};
 use petsc::Vec as PetscVec;
 
 /// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
@@ -89,12 +90,12 @@ impl Lifting {
             products,
             kept,
         } = Sums::new(problem, stiffness, &functions, &recipes, keep);
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        let mut outgoing = vec![Blocks::default(); comm.size() as usize];
         for sum in &sums {
-            sum.pack(&mut outgoing[space.owner(sum.subdomain())]);
+            sum.give(&mut outgoing[space.owner(sum.subdomain())]);
         }
         drop(sums);
-        let received = exchange_words(comm, outgoing);
+        let received = Blocks::exchange(comm, outgoing);
         let owned: Vec<_> = space.owned.iter().map(|b| b.range.clone()).collect();
         let shares = shares(&received, &owned, space.first);
         let bodies = stiffness

@@ -4,6 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::feti::primal::matrix::Blocks;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
@@ -32,30 +33,22 @@ enum Factor {
     Dense(Semidefinite),
 }
 
-/// The contribution of a subdomain to A: columns, and the lower triangle of its block.
-pub(crate) type Share<'a> = (&'a [u64], &'a [u64]);
+/// The contribution of a subdomain to A: columns, and the lower triangle of its block, column after column.
+pub(crate) type Share<'a> = (&'a [u32], &'a [f64]);
 
 /// The shares of each owned body, in the order of the ranks: `owned` has its primal dofs, those of this rank begin at
-/// `first`. `received` has the messages that `Sum::pack` has written.
+/// `first`. `received` has the sums that ranks sent.
 pub(crate) fn shares<'a>(
-    received: &'a [Vec<u64>],
+    received: &'a [Blocks],
     owned: &[Range<usize>],
     first: usize,
 ) -> Vec<Vec<Share<'a>>> {
     let mut out = vec![Vec::new(); owned.len()];
-    for mut words in received.iter().map(|w| &w[..]) {
-        while let [n, tail @ ..] = words {
-            let n = *n as usize;
-            let (columns, tail) = tail.split_at(n);
-            let (values, tail) = tail.split_at(n * (n + 1) / 2);
-            words = tail;
-            // All columns are of one body.
-            if let Some(&column) = columns.first() {
-                let at = column as usize - first;
-                let body = owned.partition_point(|range| range.end <= at);
-                out[body].push((columns, values));
-            }
-        }
+    for (columns, values) in received.iter().flat_map(Blocks::iter) {
+        // All columns are of one body.
+        let at = columns[0] as usize - first;
+        let body = owned.partition_point(|range| range.end <= at);
+        out[body].push((columns, values));
     }
     out
 }
@@ -65,10 +58,10 @@ impl BodyFactor {
     pub fn new(shares: &[Share<'_>], first: usize) -> BodyFactor {
         let columns = shares.iter().flat_map(|s| s.0.iter().copied());
         let columns = distinct(columns);
-        let place = |g: &u64| columns.binary_search(g).expect("it was collected") as u32;
+        let place = |g: &u32| columns.binary_search(g).expect("it was collected") as u32;
         let lists = shares.iter().map(|s| s.0.iter().map(place).collect());
         let lists: Vec<Vec<u32>> = lists.collect();
-        let blocks: Vec<&[u64]> = shares.iter().map(|s| s.1).collect();
+        let blocks: Vec<&[f64]> = shares.iter().map(|s| s.1).collect();
         let n = columns.len();
         let factor = sparse(n, &lists, &blocks).map_or_else(
             || Factor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
@@ -100,7 +93,7 @@ impl BodyFactor {
 }
 
 /// The sum of lower triangles, both triangles filled.
-fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
+fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[f64]]) -> Dense {
     let mut a = Dense::zeros(n, n);
     for (list, mut values) in lists.iter().zip(blocks.iter().copied()) {
         for (q, &to) in list.iter().enumerate() {
@@ -108,7 +101,7 @@ fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
             values = rest;
             let target = a.col_mut(to as usize);
             for (&i, &v) in list[q..].iter().zip(column) {
-                target[i as usize] += f64::from_bits(v);
+                target[i as usize] += v;
             }
         }
     }
@@ -117,7 +110,7 @@ fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
 }
 
 /// The sparse factor of the same sum if it is regular and has many zeros; `None` otherwise.
-fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Option<PartialCholesky> {
+fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[f64]]) -> Option<PartialCholesky> {
     let full = |entries: usize| entries as f64 > FILLED * (n * n) as f64;
     if n < MANY || lists.iter().any(|l| full(l.len() * l.len())) {
         return None;
@@ -126,7 +119,7 @@ fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Option<PartialChol
         // The lower triangle is packed column by column, each column from the diagonal down.
         let (low, high) = (i.min(j), i.max(j));
         let start = low * lists[b].len() - low * low.saturating_sub(1) / 2;
-        f64::from_bits(blocks[b][start + high - low])
+        blocks[b][start + high - low]
     };
     let a = Csr::from_blocks(n, lists, entry);
     let diagonal = a.diagonal();

@@ -9,6 +9,7 @@ use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
 use super::stored::Pair;
 use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::primal::matrix::Blocks;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
 use crate::substructures::Problem;
@@ -172,13 +173,9 @@ impl Sum {
         self.members[0]
     }
 
-    /// [n, global columns, lower triangle by columns].
-    pub fn pack(&self, words: &mut Vec<u64>) {
-        let n = self.columns.len();
-        words.push(n as u64);
-        words.extend(self.columns.iter().map(|&g| u64::from(g)));
-        for q in 0..n {
-            words.extend(self.a.col(q)[q..].iter().map(|v| v.to_bits()));
-        }
+    /// Adds the lower triangle by columns.
+    pub fn give(&self, to: &mut Blocks) {
+        let columns = (0..self.columns.len()).flat_map(|q| &self.a.col(q)[q..]);
+        to.push(self.columns.iter().copied(), columns.copied());
     }
 }

@@ -11,6 +11,9 @@
 
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
+use parallel::parcels::Parcels;
+
+use crate::substructures::Subdomain;
 
 /// A row belongs to a free body if its terms cancel to less than this, relative to their size. Rounding leaves 1e-15, a
 /// spring of 1e-8 of a row's stiffness leaves 1e-8.
@@ -24,6 +27,25 @@ const MOVES: f64 = 1e-10;
 /// Eigenvalues of the scaled S_Π below this count as zero. S_Π carries the rounding of the local elimination, about
 /// 1e-14 times the subdomain's condition number.
 const FREE_SPECTRUM: f64 = 1e-10;
+
+/// The [`motion_factors`] of subdomains as ranks send them, with the body of each.
+pub type SentFactors = Parcels<usize, f64>;
+
+/// Adds the motion factors of a subdomain; without candidates for the kernel there are none.
+pub fn push_factors(to: &mut SentFactors, sub: &Subdomain) {
+    let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
+    to.push(sub.body, motion_factors(&sub.k, columns).data);
+}
+
+/// The motion factors of these entries.
+pub fn received_factors(entries: &[f64]) -> Dense {
+    let k = (entries.len() / 2).isqrt();
+    Dense {
+        rows: 2 * k,
+        cols: k,
+        data: entries.to_vec(),
+    }
+}
 
 /// One subdomain's contribution to the kernel of its body: the triangular factor of the row-scaled K N and below it
 /// that of N, 2k × k together.

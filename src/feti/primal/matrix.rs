@@ -6,34 +6,62 @@ use mpi::topology::SimpleCommunicator;
 
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
 
-/// Blocks on their way to the ranks that own their bodies: [n, global numbers (n), entries row by row (n²)] of each.
-pub struct Outgoing(Vec<Vec<u64>>);
+/// Blocks of matrices, as ranks send them to the owners of bodies.
+#[derive(Debug, Clone, Default)]
+pub struct Blocks {
+    /// The global numbers of the dofs of each block, and where its entries begin.
+    numbers: Parcels<usize, u32>,
+    entries: Vec<f64>,
+}
 
-impl Outgoing {
-    /// Reserves memory: a number of words for each rank.
-    pub fn with_capacity(words: &[usize]) -> Outgoing {
-        Outgoing(words.iter().map(|&n| Vec::with_capacity(n)).collect())
+impl Blocks {
+    /// Blocks with memory for so many entries.
+    pub fn with_capacity(entries: usize) -> Blocks {
+        Blocks {
+            numbers: Parcels::default(),
+            entries: Vec::with_capacity(entries),
+        }
     }
 
-    /// Words of a block of order n.
-    pub fn words(n: usize) -> usize {
-        1 + n + n * n
+    /// Adds a block; one without dofs is left out.
+    pub fn push(
+        &mut self,
+        numbers: impl IntoIterator<Item = u32>,
+        entries: impl IntoIterator<Item = f64>,
+    ) {
+        let mut numbers = numbers.into_iter().peekable();
+        if numbers.peek().is_some() {
+            self.numbers.push(self.entries.len(), numbers);
+            self.entries.extend(entries);
+        }
     }
 
-    /// Adds a block for rank `to`. `numbers` are the global numbers of its rows and columns; a block without any is
-    /// left out.
-    pub fn push(&mut self, to: usize, numbers: impl Iterator<Item = u32>, block: &Dense) {
-        if block.rows == 0 {
-            return;
-        }
-        let words = &mut self.0[to];
-        words.push(block.rows as u64);
-        words.extend(numbers.map(u64::from));
-        for i in 0..block.rows {
-            words.extend((0..block.cols).map(|j| block.get(i, j).to_bits()));
-        }
+    /// The numbers of the dofs of block `k`, and its entries.
+    fn get(&self, k: usize) -> (&[u32], &[f64]) {
+        let (start, numbers) = self.numbers.get(k);
+        let end = match k + 1 < self.numbers.len() {
+            true => self.numbers.get(k + 1).0,
+            false => self.entries.len(),
+        };
+        (numbers, &self.entries[start..end])
+    }
+
+    /// For each block the numbers of its dofs, and its entries.
+    pub fn iter(&self) -> impl Iterator<Item = (&[u32], &[f64])> {
+        (0..self.numbers.len()).map(|k| self.get(k))
+    }
+
+    /// Sends `outgoing[r]` to rank r and returns what every rank sent here. Collective.
+    pub fn exchange(comm: &SimpleCommunicator, outgoing: Vec<Blocks>) -> Vec<Blocks> {
+        let both = outgoing.into_iter().map(|b| (b.numbers, b.entries));
+        let (numbers, entries) = both.unzip();
+        let numbers = exchange_by_rank(comm, numbers).into_iter();
+        let both = numbers.zip(exchange_by_rank(comm, entries));
+        both.map(|(numbers, entries)| Blocks { numbers, entries })
+            .collect()
     }
 }
 
@@ -42,8 +70,9 @@ impl Outgoing {
 pub struct PrimalMatrix {
     /// First global number owned by this rank.
     first: usize,
-    received: Vec<Vec<u64>>,
-    /// The blocks by their first owned dof: (that dof, sender, first word). The blocks of a body are consecutive.
+    /// By sender; entries are row by row.
+    received: Vec<Blocks>,
+    /// The blocks by their first owned dof: (that dof, sender, place). The blocks of a body are consecutive.
     index: Vec<(u32, u32, usize)>,
     /// The diagonal of the sum, by owned dof.
     diagonal: Vec<f64>,
@@ -52,27 +81,24 @@ pub struct PrimalMatrix {
 }
 
 /// A subdomain's part: owned dofs, and entries row by row.
-type Block<'a> = (Vec<u32>, &'a [u64]);
+type Block<'a> = (Vec<u32>, &'a [f64]);
 
 impl PrimalMatrix {
     /// Sends the blocks; `n` dofs from global number `first` on are owned here. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
-        outgoing: Outgoing,
+        outgoing: Vec<Blocks>,
         first: usize,
         n: usize,
     ) -> PrimalMatrix {
-        PrimalMatrix::received(exchange_words(comm, outgoing.0), first, n)
+        PrimalMatrix::received(Blocks::exchange(comm, outgoing), first, n)
     }
 
-    fn received(received: Vec<Vec<u64>>, first: usize, n: usize) -> PrimalMatrix {
+    fn received(received: Vec<Blocks>, first: usize, n: usize) -> PrimalMatrix {
         let mut index = Vec::new();
-        for (sender, words) in (0..).zip(&received) {
-            let mut at = 0;
-            while at < words.len() {
-                index.push((words[at + 1] as u32 - first as u32, sender, at));
-                at += Outgoing::words(words[at] as usize);
-            }
+        for (sender, blocks) in (0..).zip(&received) {
+            let firsts = blocks.iter().map(|(numbers, _)| numbers[0] - first as u32);
+            index.extend(firsts.zip(0..).map(|(dof, at)| (dof, sender, at)));
         }
         index.sort_unstable();
         let mut matrix = PrimalMatrix {
@@ -85,7 +111,7 @@ impl PrimalMatrix {
         let mut diagonal = vec![0.0; n];
         for (dofs, values) in matrix.of_body(&(0..n)) {
             for (i, value) in dofs.iter().zip(values.iter().step_by(dofs.len() + 1)) {
-                diagonal[*i as usize] += f64::from_bits(*value);
+                diagonal[*i as usize] += value;
             }
         }
         matrix.diagonal = diagonal;
@@ -98,11 +124,9 @@ impl PrimalMatrix {
         let offset = (self.first + body.start) as u32;
         let blocks = self.index[place(body.start)..place(body.end)].iter();
         blocks.map(move |&(_, sender, at)| {
-            let words = &self.received[sender as usize][at..];
-            let n = words[0] as usize;
-            let (numbers, tail) = words[1..].split_at(n);
-            let dofs = numbers.iter().map(|&g| g as u32 - offset);
-            (dofs.collect(), &tail[..n * n])
+            let (numbers, entries) = self.received[sender as usize].get(at);
+            let dofs = numbers.iter().map(|&g| g - offset);
+            (dofs.collect(), entries)
         })
     }
 
@@ -134,7 +158,7 @@ impl PrimalMatrix {
         for (dofs, values) in self.of_body(body) {
             for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
                 for (&j, v) in dofs.iter().zip(row) {
-                    out.data[i as usize + j as usize * n] += f64::from_bits(*v);
+                    out.data[i as usize + j as usize * n] += v;
                 }
             }
         }
@@ -145,9 +169,8 @@ impl PrimalMatrix {
 
     /// S_Π of the body with these owned dofs, sparse.
     pub fn sparse(&self, body: &Range<usize>) -> Csr {
-        let (lists, values): (Vec<Vec<u32>>, Vec<&[u64]>) = self.of_body(body).unzip();
-        let value =
-            |b: usize, i: usize, j: usize| f64::from_bits(values[b][i * lists[b].len() + j]);
+        let (lists, values): (Vec<Vec<u32>>, Vec<&[f64]>) = self.of_body(body).unzip();
+        let value = |b: usize, i: usize, j: usize| values[b][i * lists[b].len() + j];
         let mut out = Csr::from_blocks(body.len(), &lists, value);
         for (i, value) in self.shifts(body) {
             let at = out.row(i).0.binary_search(&(i as u32));
@@ -163,9 +186,7 @@ impl PrimalMatrix {
         let mut out = Vec::new();
         for (dofs, values) in self.of_body(&(0..self.shifts.len())) {
             for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
-                let entry = |(&j, v): (&u32, &u64)| {
-                    (first + i as i32, first + j as i32, f64::from_bits(*v))
-                };
+                let entry = |(&j, &v): (&u32, &f64)| (first + i as i32, first + j as i32, v);
                 out.extend(dofs.iter().zip(row).map(entry));
             }
         }

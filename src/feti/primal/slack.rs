@@ -19,11 +19,7 @@ pub fn check(
     locals: &[Scaled],
 ) -> Result<()> {
     let comm = session.comm();
-    let slack: Vec<u64> = space
-        .matrix
-        .slack()
-        .map(|i| (space.first + i) as u64)
-        .collect();
+    let slack: Vec<usize> = space.matrix.slack().map(|i| space.first + i).collect();
     if !any(comm, !slack.is_empty()) {
         return Ok(());
     }
@@ -36,7 +32,7 @@ pub fn check(
             .enumerate()
             .map(move |(p, &g)| (j, p, g))
     });
-    let found = vertices.find(|&(_, _, g)| slack.contains(&u64::from(space.ghosts[g as usize])));
+    let found = vertices.find(|&(_, _, g)| slack.contains(&(space.ghosts[g as usize] as usize)));
     session.agree(match found {
         None => Ok(()),
         Some((j, p, _)) => {

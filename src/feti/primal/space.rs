@@ -3,23 +3,24 @@
 //! All primal dofs of a body are owned by one rank: that of the body's lowest subdomain. S_Π is therefore block
 //! diagonal by rank as well as by body. Primal dofs are numbered rank after rank, body after body.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
-use super::kernel;
-use super::matrix::{Outgoing, PrimalMatrix};
+use super::kernel::{self, SentFactors};
+use super::matrix::{Blocks, PrimalMatrix};
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
-use parallel::exchange::{exchange_words, offsets};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::{exchange_by_rank, offsets};
 use parallel::halo::numbered;
+use parallel::parcels::Parcels;
 
 /// A body whose primal dofs this rank owns.
 #[derive(Debug)]
@@ -35,6 +36,15 @@ pub struct OwnedBody {
     pub combinations: Dense,
     /// Primal dofs of the body (indices in 0..n) that are held to make S_Π regular; as many as the defect.
     pub fixing: Vec<usize>,
+}
+
+/// A primal dof by what the subdomains that share it have in common, in the order in which the dofs are numbered.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Pod, Zeroable)]
+struct PrimalName {
+    body: u32,
+    kind: u32,
+    key: u64,
 }
 
 /// The numbering of the primal dofs and the kernels of the bodies.
@@ -80,13 +90,15 @@ impl PrimalSpace {
         let mut room = vec![0; comm.size() as usize];
         let to = |j: usize| space.owner(j);
         for (j, local) in locals.iter().enumerate() {
-            room[to(j)] += Outgoing::words(local.gamma().n_pi());
+            room[to(j)] += local.gamma().n_pi().pow(2);
         }
-        let mut outgoing = Outgoing::with_capacity(&room);
+        let mut outgoing: Vec<Blocks> = room.into_iter().map(Blocks::with_capacity).collect();
         for (j, local) in locals.iter().enumerate() {
             let numbers = space.of_subdomain[j].iter();
             let numbers = numbers.map(|&g| space.ghosts[g as usize]);
-            outgoing.push(to(j), numbers, &local.sigma());
+            let sigma = local.sigma();
+            let rows = (0..sigma.rows).flat_map(|i| (0..sigma.cols).map(move |j| (i, j)));
+            outgoing[to(j)].push(numbers, rows.map(|(i, j)| sigma.get(i, j)));
         }
         space.matrix = PrimalMatrix::new(comm, outgoing, space.first, space.n_owned);
         space.find_kernels(comm, problem, locals, &asked);
@@ -106,7 +118,7 @@ impl PrimalSpace {
         averages: &[Vec<Average>],
         locals: &[Scaled],
     ) -> Vec<Vec<u32>> {
-        let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        let mut requests: Vec<Vec<PrimalName>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             // A vertex is identified by its body dof, an average by its entity, another functional by a body dof. A
             // fixing dof belongs to its subdomain alone.
@@ -117,23 +129,19 @@ impl PrimalSpace {
             let fixing = local.gamma().fixing.iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {
-                let body = (sub.body as u64) << 2 | kind;
-                requests[self.owner(j)].extend([body, key]);
+                let body = sub.body as u32;
+                requests[self.owner(j)].push(PrimalName { body, kind, key });
             }
         }
-        let sent: Vec<usize> = requests.iter().map(|r| r.len() / 2).collect();
-        let received = exchange_words(comm, requests);
-        let pairs = |words: &[u64]| -> Vec<(u64, u64)> {
-            words.chunks_exact(2).map(|w| (w[0], w[1])).collect()
-        };
-        let all = distinct(received.iter().flat_map(|w| pairs(w)));
+        let received = exchange_by_rank(comm, requests);
+        let all = distinct(received.iter().flatten().copied());
         self.n_owned = all.len();
         (self.first, self.n_global) = offsets(comm, all.len());
         let first = self.first;
         let mut start = 0;
-        for group in all.chunk_by(|a, b| a.0 >> 2 == b.0 >> 2) {
+        for group in all.chunk_by(|a, b| a.body == b.body) {
             self.owned.push(OwnedBody {
-                body: (group[0].0 >> 2) as usize,
+                body: group[0].body as usize,
                 range: start..start + group.len(),
                 z: Dense::default(),
                 combinations: Dense::default(),
@@ -141,22 +149,15 @@ impl PrimalSpace {
             });
             start += group.len();
         }
-        let number = |pair: (u64, u64)| {
-            let at = all
-                .binary_search(&pair)
-                .expect("every request was collected");
-            (first + at) as u32
+        let number = |name: &PrimalName| {
+            let at = all.binary_search(name);
+            (first + at.expect("every request was collected")) as u32
         };
         let asked: Vec<Vec<u32>> = received
             .iter()
-            .map(|w| pairs(w).into_iter().map(number).collect())
+            .map(|names| names.iter().map(number).collect())
             .collect();
-        let replies = asked
-            .iter()
-            .map(|list| list.iter().map(|&g| u64::from(g)).collect())
-            .collect();
-        let answers = exchange_words(comm, replies);
-        debug_assert!(answers.iter().zip(&sent).all(|(a, &n)| a.len() == n));
+        let answers = exchange_by_rank(comm, asked.clone());
 
         let mut next = vec![0; answers.len()];
         let global: Vec<Vec<u32>> = problem
@@ -168,10 +169,7 @@ impl PrimalSpace {
                 let r = r as usize;
                 let n = local.gamma().n_pi();
                 next[r] += n;
-                answers[r][next[r] - n..next[r]]
-                    .iter()
-                    .map(|&g| g as u32)
-                    .collect()
+                answers[r][next[r] - n..next[r]].to_vec()
             })
             .collect();
         (self.ghosts, self.of_subdomain) = numbered(&global);
@@ -185,17 +183,14 @@ impl PrimalSpace {
         locals: &[Scaled],
         asked: &[Vec<u32>],
     ) {
-        // Messages of the subdomains: [body, k, factors (2k²)], and N at the primal dofs: [number, k values].
-        let size = comm.size() as usize;
-        let mut factors: Vec<Vec<u64>> = vec![Vec::new(); size];
-        let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
+        // The factors of each subdomain by body, and N at the primal dofs by their numbers.
+        let mut factors: Vec<SentFactors> = Parcels::for_each_rank(comm);
+        let mut values = Parcels::for_each_rank(comm);
         for (j, sub) in problem.local.iter().enumerate() {
             let to = self.owner(j);
             let local = &locals[j];
             let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
-            let factor = kernel::motion_factors(&sub.k, columns);
-            factors[to].extend([sub.body as u64, columns.len() as u64]);
-            factors[to].extend(factor.data.iter().map(|v| v.to_bits()));
+            kernel::push_factors(&mut factors[to], sub);
             if columns.is_empty() {
                 continue;
             }
@@ -206,26 +201,32 @@ impl PrimalSpace {
             let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
             for (p, &place) in self.of_subdomain[j].iter().enumerate() {
                 let number = self.ghosts[place as usize];
-                values[to].extend([u64::from(number), columns.len() as u64]);
-                values[to].extend(primal.iter().map(|c| c[p].to_bits()));
+                values[to].push(number, primal.iter().map(|c| c[p]));
             }
         }
-        let factors = exchange_words(comm, factors).concat();
-        let factors = self.by_body(&factors, |w| {
-            (w[0] as usize, 2 + 2 * (w[1] * w[1]) as usize)
-        });
-        let values = exchange_words(comm, values).concat();
-        let values = self.by_body(&values, |w| (self.body_at(w[0]), 2 + w[1] as usize));
+        let mut factors_of: FxHashMap<usize, Vec<Dense>> = FxHashMap::default();
+        for (body, entries) in exchange_by_rank(comm, factors)
+            .iter()
+            .flat_map(Parcels::iter)
+        {
+            let of_body = factors_of.entry(body).or_default();
+            of_body.push(kernel::received_factors(entries));
+        }
+        let values = exchange_by_rank(comm, values);
+        let mut values_of: FxHashMap<usize, Vec<(usize, &[f64])>> = FxHashMap::default();
+        for (number, row) in values.iter().flat_map(Parcels::iter) {
+            let i = number as usize - self.first;
+            let body = self.owned[self.body_at(i)].body;
+            values_of.entry(body).or_default().push((i, row));
+        }
         let stiffness = self.local_stiffness(problem, locals);
         let mut owned = std::mem::take(&mut self.owned);
         for body in &mut owned {
             // The owner of a body has a subdomain of it.
             let stiffness = stiffness[&body.body];
-            let of = |messages: &BTreeMap<usize, Vec<u64>>| {
-                messages.get(&body.body).cloned().unwrap_or_default()
-            };
-            (body.z, body.combinations) =
-                self.kernel_of(body, &of(&factors), &of(&values), stiffness);
+            let factors = factors_of.remove(&body.body).unwrap_or_default();
+            let values = values_of.remove(&body.body).unwrap_or_default();
+            (body.z, body.combinations) = self.kernel_of(body, &factors, &values, stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
             let n = body.range.len() as f64;
             // Any positive number makes S_Π regular; the mean diagonal entry keeps its condition. If nothing but the
@@ -244,28 +245,9 @@ impl PrimalSpace {
         self.share_kernels(comm, asked);
     }
 
-    /// The messages of each body; `read` gives the body and the length of the message at the front.
-    fn by_body(
-        &self,
-        words: &[u64],
-        read: impl Fn(&[u64]) -> (usize, usize),
-    ) -> BTreeMap<usize, Vec<u64>> {
-        let mut out: BTreeMap<usize, Vec<u64>> = BTreeMap::new();
-        let mut rest = words;
-        while !rest.is_empty() {
-            let (body, length) = read(rest);
-            let (message, tail) = rest.split_at(length);
-            out.entry(body).or_default().extend(message);
-            rest = tail;
-        }
-        out
-    }
-
-    /// The owned body of an owned primal dof, given by its global number.
-    fn body_at(&self, number: u64) -> usize {
-        let i = number as usize - self.first;
-        let at = self.owned.partition_point(|b| b.range.end <= i);
-        self.owned[at].body
+    /// The place among the owned bodies of that of owned primal dof `i`.
+    fn body_at(&self, i: usize) -> usize {
+        self.owned.partition_point(|b| b.range.end <= i)
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of each body.
@@ -284,70 +266,44 @@ impl PrimalSpace {
     fn kernel_of(
         &self,
         body: &OwnedBody,
-        factors: &[u64],
-        values: &[u64],
+        factors: &[Dense],
+        values: &[(usize, &[f64])],
         stiffness: f64,
     ) -> (Dense, Dense) {
-        let n = body.range.len();
-        let mut mine = Vec::new();
-        let mut known = true;
-        let mut rest = factors;
-        while let [_, k, tail @ ..] = rest {
-            let k = *k as usize;
-            let (data, tail) = tail.split_at(2 * k * k);
-            known &= k > 0;
-            mine.push(Dense {
-                rows: 2 * k,
-                cols: k,
-                data: data.iter().map(|&w| f64::from_bits(w)).collect(),
-            });
-            rest = tail;
-        }
-        if !known {
+        if factors.iter().any(|f| f.cols == 0) {
             let s_pi = self.matrix.dense(&body.range);
             return (kernel::null_space(&s_pi, stiffness), Dense::default());
         }
-        let combinations = kernel::null_combinations(&mine);
-        let mut z = Dense::zeros(n, combinations.cols);
-        let mut rest = values;
-        while let [number, k, tail @ ..] = rest {
-            let (row, tail) = tail.split_at(*k as usize);
-            let i = *number as usize - self.first;
-            if body.range.contains(&i) {
-                for c in 0..combinations.cols {
-                    let terms = row.iter().zip(combinations.col(c));
-                    let sum = terms.map(|(&w, c)| f64::from_bits(w) * c).sum();
-                    z.set(i - body.range.start, c, sum);
-                }
+        let combinations = kernel::null_combinations(factors);
+        let mut z = Dense::zeros(body.range.len(), combinations.cols);
+        for (i, row) in values {
+            for c in 0..combinations.cols {
+                let terms = row.iter().zip(combinations.col(c));
+                let sum = terms.map(|(v, c)| v * c).sum();
+                z.set(i - body.range.start, c, sum);
             }
-            rest = tail;
         }
         (z, combinations)
     }
 
     fn share_kernels(&mut self, comm: &SimpleCommunicator, asked: &[Vec<u32>]) {
-        let row_of = |g: &u32| -> Vec<u64> {
-            let i = *g as usize - self.first;
-            let body = &self.owned[self.owned.partition_point(|b| b.range.end <= i)];
-            let row = (0..body.z.cols).map(|c| body.z.get(i - body.range.start, c).to_bits());
-            [u64::from(*g), body.z.cols as u64]
-                .into_iter()
-                .chain(row)
-                .collect()
-        };
-        let replies = asked
-            .iter()
-            .map(|l| l.iter().flat_map(row_of).collect())
-            .collect();
-        let answers = exchange_words(comm, replies).concat();
+        let mut outgoing = Parcels::for_each_rank(comm);
+        for (to, numbers) in outgoing.iter_mut().zip(asked) {
+            for &g in numbers {
+                let i = g as usize - self.first;
+                let body = &self.owned[self.body_at(i)];
+                let row = (0..body.z.cols).map(|c| body.z.get(i - body.range.start, c));
+                to.push(g, row);
+            }
+        }
         self.z_at_ghosts = vec![Vec::new(); self.ghosts.len()];
-        let mut rest = &answers[..];
-        while let [number, k, tail @ ..] = rest {
-            let (row, tail) = tail.split_at(*k as usize);
-            let at = self.ghosts.binary_search(&(*number as u32));
+        for (number, row) in exchange_by_rank(comm, outgoing)
+            .iter()
+            .flat_map(Parcels::iter)
+        {
+            let at = self.ghosts.binary_search(&number);
             let at = at.expect("answers are to our own requests");
-            self.z_at_ghosts[at] = row.iter().map(|&w| f64::from_bits(w)).collect();
-            rest = tail;
+            self.z_at_ghosts[at] = row.to_vec();
         }
     }
 

@@ -1,11 +1,10 @@
 //! Motions of single bodies that nothing holds: most motions that nothing holds are such. They are found in the blocks
 //! of the bodies on the diagonal of GᵀG, before it is factored.
 
-use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
 use super::known::Known;
-use super::motion::{Motion, NOTHING_SOLVED};
+use super::motion::{Coefficient, Motion, NOTHING_SOLVED};
 use super::pattern::Pattern;
 use super::weak::weak_columns;
 use base::linalg::csr::Csr;
@@ -13,7 +12,8 @@ use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
 use cholesky::team::Team;
-use parallel::exchange::{exchange_words, gather_all};
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
 
 /// The motions of single bodies that nothing holds, or nothing but rounding of the input, each with the name of the
 /// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale.
@@ -26,8 +26,7 @@ pub(super) fn alone(
 ) -> Vec<(u32, Motion)> {
     let bodies = bodies_here(pattern, team);
     let elsewhere = rows_of_others((pattern, known), team, a, &bodies);
-    // [column, number of entries, (column, coefficient)…] for each motion.
-    let mut words: Vec<u64> = Vec::new();
+    let mut found = Parcels::default();
     for columns in bodies.into_iter().map(|b| pattern.columns(b as usize)) {
         if !team.has(columns.start as u32) {
             continue;
@@ -61,24 +60,16 @@ pub(super) fn alone(
             let entries = (columns.clone()).zip(&v);
             let entries = entries.map(|(c, v)| (c as u32, v * scale[c] / unit));
             let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
-            let name = |c: u32| u64::from(known.name(c));
-            words.extend([name((first + k) as u32), motion.len() as u64]);
-            words.extend(motion.iter().flat_map(|(c, v)| [name(*c), v.to_bits()]));
+            let entries = motion.iter();
+            let entries = entries.map(|&(c, v)| Coefficient::new(known.name(c), v));
+            found.push(known.name((first + k) as u32), entries);
         }
     }
-    let all = gather_all(team.comm(), &words).concat();
-    let mut rest = &all[..];
-    let mut out = Vec::new();
-    while let [k, n, tail @ ..] = rest {
-        let (entries, tail) = tail.split_at(2 * *n as usize);
-        let entries = entries.chunks_exact(2);
-        let motion = entries
-            .map(|e| (e[0] as u32, f64::from_bits(e[1])))
-            .collect();
-        out.push((*k as u32, Motion(motion)));
-        rest = tail;
-    }
-    out
+    let all = found.gather_all(team.comm());
+    let motion = |entries: &[Coefficient]| Motion(entries.iter().map(Coefficient::pair).collect());
+    let each = all.iter().flat_map(Parcels::iter);
+    each.map(|(column, entries)| (column, motion(entries)))
+        .collect()
 }
 
 /// The bodies with columns that this rank has, increasing.
@@ -95,30 +86,21 @@ fn rows_of_others(
     a: &Csr,
     bodies: &[u32],
 ) -> FxHashMap<u32, Vec<f64>> {
-    let size = team.comm().size() as usize;
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
+    let mut outgoing = Parcels::for_each_rank(team.comm());
     for columns in bodies.iter().map(|&b| pattern.columns(b as usize)) {
         if team.has(columns.start as u32) {
             continue;
         }
         for row in columns.clone().filter(|&c| team.has(c as u32)) {
-            let to = &mut outgoing[team.place(columns.start as u32).rank as usize];
-            let name = known.name(row as u32);
-            to.extend([u64::from(name), columns.len() as u64]);
-            to.extend(columns.clone().map(|c| a.get(row, c).to_bits()));
+            let to = team.place(columns.start as u32).rank as usize;
+            let values = columns.clone().map(|c| a.get(row, c));
+            outgoing[to].push(known.name(row as u32), values);
         }
     }
-    let mut out = FxHashMap::default();
-    for words in exchange_words(team.comm(), outgoing) {
-        let mut rest = &words[..];
-        while let [row, n, tail @ ..] = rest {
-            let (values, tail) = tail.split_at(*n as usize);
-            let values = values.iter().map(|&w| f64::from_bits(w));
-            out.insert(known.number(*row as u32), values.collect());
-            rest = tail;
-        }
-    }
-    out
+    let received = exchange_by_rank(team.comm(), outgoing);
+    let rows = received.iter().flat_map(Parcels::iter);
+    rows.map(|(row, values)| (known.number(row), values.to_vec()))
+        .collect()
 }
 
 /// The v with A v = 0 that belongs to the dropped column `k`.

@@ -13,7 +13,8 @@ use rustc_hash::FxHashMap;
 use super::rows::Rows;
 use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
-use parallel::exchange::{gather_all, highest, sum_all};
+use parallel::exchange::{highest, sum_all};
+use parallel::parcels::Parcels;
 
 /// Columns in blocks: those of a block follow each other, and belong to one body.
 pub struct Blocks {
@@ -38,19 +39,12 @@ impl Blocks {
     /// The blocks of AᵀA for these rows. The same on every rank. Collective.
     pub fn of_rows(comm: &SimpleCommunicator, rows: &Rows, start: &[usize]) -> Blocks {
         let r = *start.last().expect("there is an end");
-        let mut words: Vec<u64> = Vec::new();
+        let mut largest = Parcels::default();
         for set in largest_sets(rows, start) {
-            words.push(set.len() as u64);
-            words.extend(set.iter().map(|&c| u64::from(c)));
+            largest.push((), set.iter().copied());
         }
-        let all = gather_all(comm, &words).concat();
-        let mut sets: Vec<&[u64]> = Vec::new();
-        let mut rest = &all[..];
-        while let [n, tail @ ..] = rest {
-            let (set, tail) = tail.split_at(*n as usize);
-            sets.push(set);
-            rest = tail;
-        }
+        let all = largest.gather_all(comm);
+        let sets: Vec<&[u32]> = all.iter().flat_map(Parcels::iter).map(|s| s.1).collect();
         // The sets in which a column is: columns of a body that are in the same ones make a block.
         let mut sets_of: Vec<Vec<u32>> = vec![Vec::new(); r];
         for (k, set) in (0..).zip(&sets) {

@@ -6,12 +6,13 @@ use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
 use super::gram::Gram;
-use super::motion::Motion;
+use super::motion::{Coefficient, Motion};
 use super::natural::NaturalCoarse;
 use super::raised::{Row, MOST};
 use super::shape::Shape;
 use parallel::clock::{self, Phase};
-use parallel::exchange::{gather_all, highest, sum_all};
+use parallel::exchange::{highest, sum_all};
+use parallel::parcels::Parcels;
 
 /// Motions on which the rows do more work than this, relative to the largest that they could do, are not known well
 /// enough: P would lose digits. As a rule it is some times rounding.
@@ -93,23 +94,16 @@ impl NaturalCoarse {
 
     /// The rows that are chosen now and were not, by the names of columns, on every rank. Collective.
     fn more_rows(&self, comm: &SimpleCommunicator, was: &[bool], is: &[bool]) -> Vec<Row> {
-        // [number of entries, columns, values] of each.
-        let mut words: Vec<u64> = Vec::new();
+        let mut mine = Parcels::default();
         for i in (0..is.len()).filter(|&i| is[i] && !was[i]) {
             let (columns, values) = self.all.entries(i);
-            words.push(columns.len() as u64);
-            words.extend(columns.iter().map(|&c| u64::from(self.known().name(c))));
-            words.extend(values.iter().map(|v| v.to_bits()));
+            let names = columns.iter().map(|&c| self.known().name(c));
+            let entries = names.zip(values).map(|(c, &v)| Coefficient::new(c, v));
+            mine.push((), entries);
         }
-        let all = gather_all(comm, &words).concat();
-        let (mut rest, mut out) = (&all[..], Vec::new());
-        while let [n, tail @ ..] = rest {
-            let (columns, tail) = tail.split_at(*n as usize);
-            let (values, tail) = tail.split_at(*n as usize);
-            let columns = columns.iter().map(|&c| c as u32).collect();
-            out.push((columns, values.iter().map(|&w| f64::from_bits(w)).collect()));
-            rest = tail;
-        }
-        out
+        let all = mine.gather_all(comm);
+        let rows = all.iter().flat_map(Parcels::iter);
+        rows.map(|((), row)| row.iter().map(Coefficient::pair).unzip())
+            .collect()
     }
 }

@@ -23,13 +23,13 @@ impl KernelColumns {
     /// From the bodies that this rank owns, whose kernels are known. Collective.
     pub fn new(comm: &SimpleCommunicator, n_bodies: usize, owned: &[OwnedBody]) -> KernelColumns {
         let floating = owned.iter().filter(|b| b.z.cols > 0);
-        let words = floating.flat_map(|b| [b.body as u64, b.z.cols as u64]);
+        let mine = floating.map(|b| [b.body, b.z.cols]);
         let (mut start, mut home) = (vec![0; n_bodies + 1], vec![0; n_bodies]);
-        let all = gather_all(comm, &words.collect::<Vec<u64>>());
-        for (rank, words) in (0..).zip(&all) {
-            for body in words.chunks_exact(2) {
-                home[body[0] as usize] = rank;
-                start[body[0] as usize + 1] = body[1] as usize;
+        let all = gather_all(comm, &mine.collect::<Vec<_>>());
+        for (rank, bodies) in (0..).zip(&all) {
+            for &[body, columns] in bodies {
+                home[body] = rank;
+                start[body + 1] = columns;
             }
         }
         for body in 0..n_bodies {

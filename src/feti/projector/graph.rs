@@ -32,7 +32,7 @@ impl BodyGraph {
         }
         let mut terms: Vec<Vec<u32>> = local.iter().map(|&b| vec![b]).collect();
         let mut touched = terms.clone();
-        let mut pairs: Vec<u64> = Vec::new();
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
         for block in &jump.blocks {
             let bodies = block.bodies();
             for r in 0..block.rows.len() {
@@ -40,13 +40,12 @@ impl BodyGraph {
                 touched.push(bodies.clone());
             }
             for &a in &bodies {
-                let with = |&b: &u32| u64::from(a) << 32 | u64::from(b);
-                pairs.extend(bodies.iter().map(with));
+                pairs.extend(bodies.iter().map(|&b| [a, b]));
             }
         }
         let mut near: Vec<Vec<u32>> = (0..n as u32).map(|b| vec![b]).collect();
-        for pair in gather_all(stiffness.comm(), &distinct(pairs)).concat() {
-            near[(pair >> 32) as usize].push(pair as u32);
+        for [a, b] in gather_all(stiffness.comm(), &distinct(pairs)).concat() {
+            near[a as usize].push(b);
         }
         BodyGraph {
             n,

@@ -13,11 +13,11 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::motion::Motion;
+use super::motion::{Coefficient, Motion};
 use base::linalg::sorted::distinct;
 use cholesky::team::Team;
 use parallel::clock::{self, Phase};
-use parallel::exchange::{exchange_words, gather_all, max_all, sum_all};
+use parallel::exchange::{exchange_by_rank, gather_all, max_all, sum_all};
 use parallel::post::{posting, received, Address};
 
 /// The columns that a rank knows.
@@ -63,15 +63,15 @@ impl Known {
                 at => of_others[at].push(number),
             }
         }
-        let words = of_others.iter().map(|list| {
-            let names = list.iter().map(|&n| u64::from(names[n as usize]));
+        let wanted = of_others.iter().map(|list| {
+            let names = list.iter().map(|&n| names[n as usize]);
             names.collect()
         });
-        let here = |name: &u64| {
-            let at = names.binary_search(&(*name as u32));
+        let here = |name: &u32| {
+            let at = names.binary_search(name);
             at.expect("a rank knows the columns of its fronts") as u32
         };
-        let asked = exchange_words(team.comm(), words.collect());
+        let asked: Vec<Vec<u32>> = exchange_by_rank(team.comm(), wanted.collect());
         let for_others = asked.iter().map(|names| names.iter().map(here).collect());
         let by_rank = |lists: &mut dyn Iterator<Item = Vec<u32>>| {
             let ranks = (0..).zip(lists);
@@ -255,10 +255,9 @@ impl Known {
         let bound = least * self.largest(comm, x);
         let entries = own.iter().map(|&c| (c, x[c as usize]));
         let entries = entries.filter(|e| e.1.abs() > bound);
-        let words = entries.flat_map(|(c, v)| [u64::from(self.name(c)), v.to_bits()]);
-        let all = gather_all(comm, &words.collect::<Vec<u64>>()).concat();
-        let entry = |pair: &[u64]| (pair[0] as u32, f64::from_bits(pair[1]));
-        let mut entries: Vec<(u32, f64)> = all.chunks_exact(2).map(entry).collect();
+        let mine = entries.map(|(c, v)| Coefficient::new(self.name(c), v));
+        let all = gather_all(comm, &mine.collect::<Vec<_>>()).concat();
+        let mut entries: Vec<(u32, f64)> = all.iter().map(Coefficient::pair).collect();
         entries.sort_by_key(|e| e.0);
         Motion(entries)
     }

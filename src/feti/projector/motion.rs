@@ -1,5 +1,32 @@
 //! Rigid motions of bodies as combinations of kernel vectors, most of which do not take part.
 
+use bytemuck::{Pod, Zeroable};
+
+/// A coefficient of a motion, or of a row of G, on its way to other ranks: the name of its column, and the value.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Coefficient {
+    /// Name of the column.
+    pub column: usize,
+    /// The coefficient.
+    pub value: f64,
+}
+
+impl Coefficient {
+    /// In the column of this name.
+    pub fn new(column: u32, value: f64) -> Coefficient {
+        Coefficient {
+            column: column as usize,
+            value,
+        }
+    }
+
+    /// The name of the column, and the value.
+    pub fn pair(&self) -> (u32, f64) {
+        (self.column as u32, self.value)
+    }
+}
+
 /// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions.
 pub(super) const NOTHING: f64 = 1e-13;
 

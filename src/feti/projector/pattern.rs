@@ -32,13 +32,12 @@ pub struct Pattern {
 pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Vec<Vec<u32>> {
     let n = start.len() - 1;
     let body = body_of_columns(start);
-    let mut pairs: Vec<u64> = Vec::new();
+    let mut pairs: Vec<[u32; 2]> = Vec::new();
     for i in 0..a.n() {
         let (left, right) = (a.entries(i).0, b.entries(i).0);
         for p in runs(&body, left) {
             for q in runs(&body, right) {
-                let (p, q) = (body[left[p.start] as usize], body[right[q.start] as usize]);
-                pairs.push(u64::from(p) << 32 | u64::from(q));
+                pairs.push([body[left[p.start] as usize], body[right[q.start] as usize]]);
             }
         }
         // Rows of one face meet the same bodies.
@@ -49,8 +48,8 @@ pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -
     let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
     let all = gather_all(comm, &distinct(pairs)).concat();
     clock::timed(Phase::NaturalOrder, || {
-        for pair in all {
-            lists[(pair >> 32) as usize].push(pair as u32);
+        for [a, b] in all {
+            lists[a as usize].push(b);
         }
         lists.into_iter().map(distinct).collect()
     })

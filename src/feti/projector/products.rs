@@ -6,17 +6,17 @@ use mpi::traits::Communicator;
 
 use super::known::Known;
 use super::pattern::Pattern;
-use super::rows::Rows;
+use super::rows::{RowEntry, Rows};
 use super::shape::Shape;
 use base::linalg::csr::Csr;
 use cholesky::team::Team;
-use parallel::exchange::{exchange_words, gather_all, sum_all};
+use parallel::exchange::{exchange_by_rank, gather_all, sum_all};
 
 /// Entries on their way to the ranks that have their rows.
 pub struct Outgoing<'a> {
     team: &'a Team,
     known: &'a Known,
-    words: Vec<Vec<u64>>,
+    entries: Vec<Vec<RowEntry>>,
 }
 
 /// An entry that another rank has sent.
@@ -33,29 +33,31 @@ pub struct Sent {
 impl<'a> Outgoing<'a> {
     /// Nothing yet.
     pub fn new(team: &'a Team, known: &'a Known) -> Outgoing<'a> {
-        let words = vec![Vec::new(); team.comm().size() as usize];
-        Outgoing { team, known, words }
+        let entries = vec![Vec::new(); team.comm().size() as usize];
+        Outgoing {
+            team,
+            known,
+            entries,
+        }
     }
 
     /// Adds an entry.
     pub fn add(&mut self, row: u32, column: u32, value: f64) {
         let to = self.team.place(row).rank as usize;
-        let [row, column] = [row, column].map(|c| u64::from(self.known.name(c)));
-        self.words[to].extend([row << 32 | column, value.to_bits()]);
+        let [row, col] = [row, column].map(|c| self.known.name(c));
+        self.entries[to].push(RowEntry { row, col, value });
     }
 
     /// Sends them; returns what others have sent to this rank, by increasing rank. Collective.
     pub fn send(self, pattern: &Pattern) -> Vec<Sent> {
         let mut sent = Vec::new();
-        let number = |name: u64| self.known.number(name as u32);
-        for (rank, words) in exchange_words(self.team.comm(), self.words)
-            .iter()
-            .enumerate()
-        {
-            sent.extend(words.chunks_exact(2).map(|pair| Sent {
-                entry: pattern.entry(number(pair[0] >> 32), number(pair[0] & 0xffff_ffff)),
+        let number = |name: u32| self.known.number(name);
+        let received = exchange_by_rank(self.team.comm(), self.entries);
+        for (rank, entries) in received.iter().enumerate() {
+            sent.extend(entries.iter().map(|e| Sent {
+                entry: pattern.entry(number(e.row), number(e.col)),
                 rank,
-                value: f64::from_bits(pair[1]),
+                value: e.value,
             }));
         }
         sent
@@ -132,23 +134,16 @@ impl Shape {
         let Some(team) = self.shared() else {
             return a;
         };
-        let mut words: Vec<u64> = Vec::new();
+        let mut mine: Vec<RowEntry> = Vec::new();
         for row in team.own_dofs() {
             let (col, val) = a.row(row as usize);
-            for (&column, value) in col.iter().zip(val) {
-                let [row, column] = [row, column].map(|c| u64::from(self.known.name(c)));
-                words.extend([row << 32 | column, value.to_bits()]);
+            for (&column, &value) in col.iter().zip(val) {
+                let [row, col] = [row, column].map(|c| self.known.name(c));
+                mine.push(RowEntry { row, col, value });
             }
         }
-        let all = gather_all(comm, &words).concat();
-        let entry = |pair: &[u64]| {
-            (
-                (pair[0] >> 32) as u32,
-                pair[0] as u32,
-                f64::from_bits(pair[1]),
-            )
-        };
-        let triplets: Vec<(u32, u32, f64)> = all.chunks_exact(2).map(entry).collect();
+        let all = gather_all(comm, &mine).concat();
+        let triplets: Vec<_> = all.iter().map(|e| (e.row, e.col, e.value)).collect();
         Csr::from_triplets(self.known.r(), &triplets)
     }
 }

@@ -11,13 +11,15 @@ use base::linalg::csr::Csr;
 use base::linalg::dense::{dot, Dense};
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
-use parallel::exchange::{sum_all, Record};
+use bytemuck::{Pod, Zeroable};
+use parallel::exchange::sum_all;
 
 /// An entry of which no more than this part is left was along the motions as a whole.
 const ALL: f64 = 1e-3;
 
 /// An entry on its way to the rank that owns its row.
-#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct RowEntry {
     /// Global row.
     pub row: u32,
@@ -25,23 +27,6 @@ pub struct RowEntry {
     pub col: u32,
     /// Value to be added.
     pub value: f64,
-}
-
-impl Record for RowEntry {
-    const WORDS: usize = 2;
-    fn pack(&self, out: &mut Vec<u64>) {
-        out.extend([
-            u64::from(self.row) << 32 | u64::from(self.col),
-            self.value.to_bits(),
-        ]);
-    }
-    fn unpack(w: &[u64]) -> Self {
-        RowEntry {
-            row: (w[0] >> 32) as u32,
-            col: (w[0] & u64::from(u32::MAX)) as u32,
-            value: f64::from_bits(w[1]),
-        }
-    }
 }
 
 /// Rows of a matrix with r columns, on the rank that owns them. Columns have their names or their numbers

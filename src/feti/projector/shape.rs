@@ -16,7 +16,7 @@ use cholesky::dissection::{part_of_dissection, Vertices};
 use cholesky::symbolic::Symbolic;
 use cholesky::team::Team;
 use parallel::clock::{self, Phase};
-use parallel::exchange::gather_all;
+use parallel::parcels::Parcels;
 
 /// Where GᵀG has entries, and in which order it is factored.
 pub struct Shape {
@@ -240,17 +240,11 @@ fn dissected(
     vertices: &Vertices,
 ) -> Vec<Vec<u32>> {
     let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
-    let mut words: Vec<u64> = Vec::new();
+    let mut sets = Parcels::default();
     for set in part_of_dissection(graph, blocks, vertices, (rank, ranks)) {
-        words.push(set.len() as u64);
-        words.extend(set.iter().map(|&b| u64::from(b)));
+        sets.push((), set);
     }
-    let all = gather_all(comm, &words).concat();
-    let (mut rest, mut sets) = (&all[..], Vec::new());
-    while let [n, tail @ ..] = rest {
-        let (set, tail) = tail.split_at(*n as usize);
-        sets.push(set.iter().map(|&b| b as u32).collect());
-        rest = tail;
-    }
-    sets
+    let all = sets.gather_all(comm);
+    let sets = all.iter().flat_map(Parcels::iter);
+    sets.map(|((), set)| set.to_vec()).collect()
 }

@@ -8,11 +8,13 @@ use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::vec3::{cross, minus, norm};
+use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 
 /// A rigid motion of a body: the point `centre` moves by `translation`, all else turns about it by `rotation` (radians,
 /// a vector along the axis; in the plane along z).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Twist {
     /// The body.
     pub body: usize,
@@ -28,8 +30,13 @@ pub struct Twist {
     pub rotation: [f64; 3],
 }
 
-/// Numbers in a message about a twist.
-const NUMBERS: usize = 10;
+/// The twist of a body in a motion, by the number of the motion.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct InMotion {
+    motion: usize,
+    twist: Twist,
+}
 
 impl Twist {
     /// The displacement that the motion has at a point, were it a point of the body.
@@ -41,23 +48,6 @@ impl Twist {
     /// The largest displacement of the body, about.
     pub fn size(&self) -> f64 {
         norm(self.translation).max(norm(self.rotation) * self.radius)
-    }
-
-    fn numbers(&self) -> [f64; NUMBERS] {
-        let [[a, b, c], [d, e, f], [g, h, i]] = [self.centre, self.translation, self.rotation];
-        [a, b, c, d, e, f, g, h, i, self.radius]
-    }
-
-    fn of(body: usize, dim: usize, n: &[f64]) -> Twist {
-        let vector = |k: usize| [n[k], n[k + 1], n[k + 2]];
-        Twist {
-            body,
-            dim,
-            centre: vector(0),
-            translation: vector(3),
-            rotation: vector(6),
-            radius: n[9],
-        }
     }
 }
 
@@ -71,8 +61,7 @@ pub fn twists<'a>(
     owned: impl Iterator<Item = (usize, &'a Dense)>,
     motions: &[Motion],
 ) -> Vec<Vec<Twist>> {
-    // [motion, body, dimension, numbers] of each body.
-    let mut words: Vec<u64> = Vec::new();
+    let mut mine: Vec<InMotion> = Vec::new();
     for (body, combinations) in owned {
         let columns = columns.of(body);
         let sub = problem.local.iter().find(|sub| sub.body == body);
@@ -97,17 +86,13 @@ pub fn twists<'a>(
                 continue;
             }
             if let Some(twist) = frame.twist(body, &of_candidates) {
-                words.extend([m as u64, body as u64, frame.dim as u64]);
-                words.extend(twist.numbers().map(f64::to_bits));
+                mine.push(InMotion { motion: m, twist });
             }
         }
     }
     let mut out = vec![Vec::new(); motions.len()];
-    for words in gather_all(comm, &words) {
-        for w in words.chunks_exact(3 + NUMBERS) {
-            let numbers: Vec<f64> = w[3..].iter().map(|&w| f64::from_bits(w)).collect();
-            out[w[0] as usize].push(Twist::of(w[1] as usize, w[2] as usize, &numbers));
-        }
+    for InMotion { motion, twist } in gather_all(comm, &mine).concat() {
+        out[motion].push(twist);
     }
     out.iter_mut().for_each(|of| of.sort_by_key(|t| t.body));
     out

@@ -32,10 +32,7 @@ fn rows_travel_unchanged() {
             ..given.clone()
         };
         let row = SolvedRow::new(&given, 2.0, -0.75, holds);
-        let mut words = Vec::new();
-        row.pack(&mut words);
-        assert_eq!(words.len(), SolvedRow::WORDS);
-        assert_eq!(SolvedRow::unpack(&words), row);
+        assert_eq!(SentRow::new(&row).row(), row);
         assert_eq!((row.state, row.holds()), (state, holds));
         assert_eq!((row.gap, row.pressure()), (0.75, Some(16.0)));
         assert_eq!((row.body(), row.node()), (Some(3), Some(70)));

@@ -16,9 +16,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Result};
+use bytemuck::{cast_slice, pod_collect_to_vec};
 use fetifeti::inside::LinearMethod;
 use fetifeti::solution::State;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
 use petsc::Session;
 
 /// A [`State`] with the rows of all ranks in canonical order.
@@ -221,7 +222,7 @@ impl Layout {
 fn to_first<T: Serialize + DeserializeOwned>(session: &Session, mine: &T) -> Vec<T> {
     let mut outgoing = vec![Vec::new(); session.size()];
     outgoing[0] = to_words(mine);
-    let received = exchange_words(session.comm(), outgoing);
+    let received = exchange_by_rank(session.comm(), outgoing);
     match session.rank() {
         0 => received.iter().map(|words| from_words(words)).collect(),
         _ => Vec::new(),
@@ -237,20 +238,15 @@ pub(super) fn from_first<T: Serialize + DeserializeOwned>(
         Some(values) => values.iter().map(to_words).collect(),
         None => vec![Vec::new(); session.size()],
     };
-    from_words(&exchange_words(session.comm(), outgoing)[0])
+    from_words(&exchange_by_rank(session.comm(), outgoing)[0])
 }
 
-/// A value as bytes, eight in a word, with zeros at the end.
-fn to_words(value: &impl Serialize) -> Vec<u64> {
-    let mut bytes = postcard::to_allocvec(value).expect("numbers, texts and lists have a form");
-    bytes.resize(bytes.len().next_multiple_of(8), 0);
-    let words = bytes.chunks_exact(8);
-    words
-        .map(|w| u64::from_le_bytes(w.try_into().expect("eight bytes")))
-        .collect()
+/// A value as bytes, with zeros at the end.
+fn to_words(value: &impl Serialize) -> Vec<u32> {
+    let bytes = postcard::to_allocvec(value).expect("numbers, texts and lists have a form");
+    pod_collect_to_vec(&bytes)
 }
 
-fn from_words<T: DeserializeOwned>(words: &[u64]) -> T {
-    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
-    postcard::from_bytes(&bytes).expect("a rank of the same program has sent it")
+fn from_words<T: DeserializeOwned>(words: &[u32]) -> T {
+    postcard::from_bytes(cast_slice(words)).expect("a rank of the same program has sent it")
 }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Place;
+use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 use petsc::Session;
 use scene::assembly::SubdomainMesh;
@@ -13,6 +14,14 @@ const MOST: usize = 16;
 
 /// ρ, or Young's modulus, and Poisson's ratio, as bits.
 type Key = [u64; 2];
+
+/// A material of a body.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct BodyMaterial {
+    body: usize,
+    key: Key,
+}
 
 /// The materials of every body.
 pub(super) struct Materials(BTreeMap<usize, BTreeSet<Key>>);
@@ -47,11 +56,11 @@ impl Materials {
                 .0
                 .iter()
                 .flat_map(|(b, keys)| keys.iter().map(move |k| (*b, *k)));
-            let words: Vec<u64> = pairs.flat_map(|(b, [r, p])| [b as u64, r, p]).collect();
-            for words in gather_all(session.comm(), &words) {
-                for w in words.chunks_exact(3) {
-                    all.add(w[0] as usize, [w[1], w[2]]);
-                }
+            let mine: Vec<BodyMaterial> = pairs
+                .map(|(body, key)| BodyMaterial { body, key })
+                .collect();
+            for BodyMaterial { body, key } in gather_all(session.comm(), &mine).concat() {
+                all.add(body, key);
             }
         }
         all

@@ -19,7 +19,8 @@ use fetifeti::solution::SolvedRow;
 use fetifeti::{FetiFeti, Solution};
 use materials::Materials;
 use mesh::Cells;
-use parallel::exchange::exchange_words;
+use parallel::exchange::exchange_by_rank;
+use parallel::parcels::Parcels;
 use petsc::Session;
 use scene::assembly::recovery::{cell_stresses, for_each_cell, Sum};
 use scene::{Scene, SteppedMesh};
@@ -217,22 +218,15 @@ pub(super) fn to_first_rank<'a>(
     session: &Session,
     local: impl Iterator<Item = (usize, &'a Vec<f64>)>,
 ) -> Vec<(usize, usize, Vec<f64>)> {
-    // [subdomain, n, value × n]
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    let mut outgoing: Vec<Parcels<usize, f64>> = Parcels::for_each_rank(session.comm());
     for (index, values) in local {
-        outgoing[0].extend([index as u64, values.len() as u64]);
-        outgoing[0].extend(values.iter().map(|v| v.to_bits()));
+        outgoing[0].push(index, values.iter().copied());
     }
     let mut out = Vec::new();
-    let received = exchange_words(session.comm(), outgoing);
-    for (rank, words) in received.iter().enumerate() {
-        let mut rest = &words[..];
-        while let [index, n, tail @ ..] = rest {
-            let (values, tail) = tail.split_at(*n as usize);
-            let values = values.iter().map(|&w| f64::from_bits(w)).collect();
-            out.push((*index as usize, rank, values));
-            rest = tail;
-        }
+    let received = exchange_by_rank(session.comm(), outgoing);
+    for (rank, parts) in received.iter().enumerate() {
+        let parts = parts.iter();
+        out.extend(parts.map(|(index, values)| (index, rank, values.to_vec())));
     }
     out
 }

@@ -158,7 +158,6 @@ fn active(
     let provided = rows.provided(&distribution::owner(session, scene)?);
     let solved = solution.rows();
     let held = provided.into_iter().zip(solved).filter(|(_, r)| r.holds());
-    let mine: Vec<u64> = held.filter_map(|(k, _)| Some(k? as u64)).collect();
-    let all = gather_all(session.comm(), &mine).concat();
-    Ok(rows.set(&all.iter().map(|&k| k as usize).collect::<Vec<_>>()))
+    let mine: Vec<usize> = held.filter_map(|(k, _)| k).collect();
+    Ok(rows.set(&gather_all(session.comm(), &mine).concat()))
 }

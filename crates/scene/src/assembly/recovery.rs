@@ -5,6 +5,7 @@
 //! size of cells, one order faster than the values inside cells of first order do.
 
 use super::{Elements, Grid, SubdomainMesh};
+use bytemuck::{Pod, Zeroable};
 use elements::cell::{centre_stress, CellStress, Element};
 use elements::element::{self, NodeStress};
 use elements::kind::CellKind;
@@ -90,7 +91,8 @@ pub fn cell_stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
 }
 
 /// A weighted sum of strains and stresses at a node.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct Sum {
     /// The sum, strain before stress.
     pub values: [f64; 12],

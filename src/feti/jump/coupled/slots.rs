@@ -6,7 +6,7 @@ use mpi::traits::Communicator;
 use crate::feti::interface::location::Locations;
 use crate::feti::jump::blocks::Block;
 use base::linalg::sorted::distinct;
-use parallel::exchange::{any, exchange_words, offsets};
+use parallel::exchange::{any, exchange, offsets};
 
 /// The dofs of coupled blocks, numbered block after block on the rank that owns the block.
 #[derive(Debug, Clone, Default)]
@@ -37,24 +37,22 @@ impl Slots {
             return (Slots::default(), places);
         }
         let (first, _) = offsets(comm, n_owned);
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        let mut outgoing: Vec<Vec<[u32; 3]>> = vec![Vec::new(); comm.size() as usize];
         for block in blocks {
             for (slot, copies) in block.slots.clone().zip(block.copies()) {
                 for copy in copies {
-                    let place = u64::from(copy.subdomain) << 32 | u64::from(copy.local);
                     let to = &mut outgoing[locations.rank(copy.subdomain)];
-                    to.extend([place, (first + slot) as u64]);
+                    to.push([copy.subdomain, copy.local, (first + slot) as u32]);
                 }
             }
         }
-        let received = exchange_words(comm, outgoing).concat();
-        let pairs = || received.chunks_exact(2).map(|w| (w[0], w[1] as u32));
-        let ghosts = distinct(pairs().map(|p| p.1));
-        for (place, slot) in pairs() {
-            let j = subdomains.binary_search(&((place >> 32) as u32));
-            let ghost = ghosts.binary_search(&slot).expect("it was collected");
-            places[j.expect("it was sent to the rank of the subdomain")]
-                .push((ghost as u32, place as u32));
+        let received = exchange(comm, outgoing);
+        let ghosts = distinct(received.iter().map(|&[_, _, slot]| slot));
+        for [subdomain, local, slot] in received {
+            let j = subdomains.binary_search(&subdomain);
+            let ghost = ghosts.binary_search(&slot);
+            let place = (ghost.expect("it was collected") as u32, local);
+            places[j.expect("it was sent to the rank of the subdomain")].push(place);
         }
         places.iter_mut().for_each(|list| list.sort_unstable());
         let slots = Slots {

@@ -4,7 +4,7 @@ use super::*;
 use crate::matrices::{distance, grid_laplacian, random};
 
 /// The entries of K as blocks: each off-diagonal one with its mirror image, each diagonal one by itself.
-fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {
+fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<f64>>) {
     let (mut lists, mut blocks) = (Vec::new(), Vec::new());
     for i in 0..k.n() {
         let (col, val) = k.row(i);
@@ -12,11 +12,11 @@ fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {
             match j as usize {
                 j if j == i => {
                     lists.push(vec![i as u32]);
-                    blocks.push(vec![v.to_bits()]);
+                    blocks.push(vec![*v]);
                 }
                 j if j > i => {
                     lists.push(vec![i as u32, j as u32]);
-                    blocks.push(vec![0, v.to_bits(), 0]);
+                    blocks.push(vec![0.0, *v, 0.0]);
                 }
                 _ => {}
             }
@@ -27,7 +27,7 @@ fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {
 
 fn both(k: &Csr) -> (Option<PartialCholesky>, Dense) {
     let (lists, blocks) = parts(k);
-    let blocks: Vec<&[u64]> = blocks.iter().map(|b| &b[..]).collect();
+    let blocks: Vec<&[f64]> = blocks.iter().map(|b| &b[..]).collect();
     (
         sparse(k.n(), &lists, &blocks),
         dense(k.n(), &lists, &blocks),

@@ -5,18 +5,14 @@ use super::*;
 #[test]
 fn sparse_and_dense_sums_and_triplets_are_the_same_matrix() {
     // Dofs 100..107 of two bodies, {0..4} and {4..7}; blocks that overlap, in any order of their dofs.
-    let mut outgoing = Outgoing::with_capacity(&[0, 0]);
-    let block = |n: usize, s: f64| Dense {
-        rows: n,
-        cols: n,
-        data: (0..n * n).map(|k| s + (k as f64).sin()).collect(),
-    };
-    outgoing.push(0, [103, 100, 101].into_iter(), &block(3, 1.0));
-    outgoing.push(0, [104, 106].into_iter(), &block(2, 2.0));
-    outgoing.push(0, std::iter::empty(), &block(0, 0.0));
-    outgoing.push(1, [101, 102].into_iter(), &block(2, 3.0));
-    outgoing.push(1, [106, 105].into_iter(), &block(2, 4.0));
-    let mut matrix = PrimalMatrix::received(outgoing.0, 100, 7);
+    let mut sent = [Blocks::default(), Blocks::default()];
+    let block = |n: usize, s: f64| (0..n * n).map(move |k| s + (k as f64).sin());
+    sent[0].push([103, 100, 101], block(3, 1.0));
+    sent[0].push([104, 106], block(2, 2.0));
+    sent[0].push([], block(0, 0.0));
+    sent[1].push([101, 102], block(2, 3.0));
+    sent[1].push([106, 105], block(2, 4.0));
+    let mut matrix = PrimalMatrix::received(sent.to_vec(), 100, 7);
     matrix.shift(1, 10.0);
     matrix.shift(6, 20.0);
     let triplets = matrix.triplets();
