@@ -150,13 +150,13 @@ pub mod error {
 #[doc(hidden)]
 pub mod inside {
     pub use crate::capi::suits as processor_suits;
-    pub use crate::feti::cost::{forms, sizes::Sizes, variation::JUMPS};
+    pub use crate::feti::cost::{forms, sizes::ProblemSizes, variation::JUMPS};
     pub use crate::feti::deflation::watch;
-    pub use crate::feti::interface::sharing::Sharing;
+    pub use crate::feti::interface::sharing::DofSharing;
     pub use crate::feti::jump::{operator::Jump, weights};
     pub use crate::feti::projector::{distributed, gram::FEW};
     pub use crate::feti::subdomain::problem::{factorisations, LocalProblem};
-    pub use crate::feti::subdomain::{equal, scaled::Scaled, turn, which};
+    pub use crate::feti::subdomain::{equal, scaled::ScaledSubdomain, turn, which};
     pub use crate::feti::LinearMethod;
     pub use crate::substructures::idle;
 }

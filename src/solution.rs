@@ -1,11 +1,12 @@
 //! The result of a solve, and what it is made of.
 
-pub use crate::contact::{Observer, Progress, State, Step};
+pub use crate::contact::{ActiveSetProgress, Observer, State, Step};
 pub use crate::feti::deflation::Cost;
 pub use crate::feti::krylov::solve::Judge;
 use crate::feti::LinearSolution;
 pub use crate::feti::{
-    Certified, Communication, Facts, FreeMotion, Kkt, PerIteration, Spectrum, Uncertified, Verdict,
+    CertificationResult, Certified, Communication, FreeMotion, Kkt, PerIteration, SetUpSummary,
+    Spectrum, Uncertified,
 };
 use crate::status::Status;
 pub use crate::substructures::{RowState, SolvedRow};
@@ -43,7 +44,7 @@ pub struct Solution {
     /// Seconds of the recovery of displacements.
     pub recover_seconds: f64,
     /// The bound of the error in the energy norm, or why there is none; `None` if nobody asked for it.
-    pub certified: Option<Verdict>,
+    pub certified: Option<CertificationResult>,
     /// Steps of the contact loop; empty without inequalities.
     pub steps: Vec<Step>,
     rows: Vec<SolvedRow>,

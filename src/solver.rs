@@ -9,14 +9,14 @@ use crate::feti::deflation::Cost;
 use crate::feti::krylov::solve::Judge;
 use crate::feti::operators::dual::Dual;
 use crate::feti::{
-    Communication, Facts, FreeMotion, LinearMethod, LinearSolution, Numbers, Spectrum,
+    Communication, FreeMotion, LinearMethod, LinearSolution, Numbers, SetUpSummary, Spectrum,
 };
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::substructures::{idle, Problem, Row, SolvedRow};
 use crate::Result;
 use parallel::exchange::any;
-use petsc::{cite, Ksp, Session, Stage};
+use petsc::{cite, Ksp, LogStage, Session};
 
 const CITATION: &str = "@techreport{Lee2010,
   author = {Jungho Lee},
@@ -49,8 +49,8 @@ const CITATION: &str = "@techreport{Lee2010,
 pub struct FetiFeti {
     pub(crate) method: LinearMethod,
     settings: Settings,
-    setup_stage: Stage,
-    solve_stage: Stage,
+    setup_stage: LogStage,
+    solve_stage: LogStage,
     /// Whether a body has motions that nothing sees.
     idle: bool,
 }
@@ -72,7 +72,7 @@ impl FetiFeti {
         settings: impl Into<Settings>,
     ) -> Result<FetiFeti> {
         cite(session, CITATION)?;
-        let stage = Stage::register(session, "FETI-FETI setup")?;
+        let stage = LogStage::register(session, "FETI-FETI setup")?;
         let staged = stage.scope()?;
         let settings = settings.into().with_options(session)?;
         let method = LinearMethod::new(session, problem, settings.method.clone())?;
@@ -83,7 +83,7 @@ impl FetiFeti {
             method,
             settings,
             setup_stage: stage,
-            solve_stage: Stage::register(session, "FETI-FETI solve")?,
+            solve_stage: LogStage::register(session, "FETI-FETI solve")?,
         })
     }
 
@@ -170,7 +170,7 @@ impl FetiFeti {
     fn solution(&self, mut found: LinearSolution, steps: Vec<Step>) -> Solution {
         if self.idle {
             let comm = self.session().comm();
-            idle::settle(comm, &self.problem().local, &mut found.u);
+            idle::remove_idle(comm, &self.problem().local, &mut found.u);
         }
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
@@ -214,8 +214,9 @@ impl FetiFeti {
 
     /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies
     /// if there are some. Patterns are not analysed again if
-    /// [`MethodSettings::keeps_analyses`](crate::settings::MethodSettings::keeps_analyses) was set. `None` if a subdomain has
-    /// motions without energy that it did not have: a new solver is to be made, with primal dofs for them. Collective.
+    /// [`MethodSettings::keeps_analyses`](crate::settings::MethodSettings::keeps_analyses) was set. `None` if a
+    /// subdomain has motions without energy that it did not have: a new solver is to be made, with primal dofs for
+    /// them. Collective.
     ///
     /// # Errors
     /// As [`FetiFeti::new`].
@@ -328,7 +329,7 @@ impl FetiFeti {
     }
 
     /// Facts about the problem.
-    pub fn facts(&self) -> &Facts {
+    pub fn facts(&self) -> &SetUpSummary {
         &self.method.facts
     }
 

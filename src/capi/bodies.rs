@@ -2,16 +2,16 @@
 //! manual pages are there.
 
 use super::coordinates::Coordinates;
-use super::handle::{alone, array, lent, list, not_null, starts, together, Handle};
-use super::stack::Given;
+use super::handle::{alone, array, lent, list, not_null, starts, together, HandlePointer};
+use super::stack::HostMatrix;
 use crate::Result;
 use base::linalg::csr::Csr;
 use base::Fault;
-use petsc::{raw, Attached};
+use petsc::{raw, AttachedNullSpace};
 use std::ffi::c_int;
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetSizes(ff: HandlePointer, local: c_int, global: c_int) -> c_int {
     alone(ff, c"FetiFetiSetSizes", |o| {
         // PETSC_DECIDE and PETSC_DETERMINE are negative.
         let size = |n: c_int| usize::try_from(n).ok();
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_in
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: HandlePointer, bs: c_int) -> c_int {
     alone(ff, c"FetiFetiSetBlockSize", |o| {
         if bs < 1 {
             return Err(
@@ -42,7 +42,7 @@ pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddSubdomain(
-    ff: Handle,
+    ff: HandlePointer,
     body: c_int,
     n: c_int,
     ia: *const c_int,
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
         let nnz = starts(ia)? as c_int;
         let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
         let k = matrix(n, ia, ja, a)?;
-        o.push(Given {
+        o.push(HostMatrix {
             k,
             dofs,
             copies: None,
@@ -94,7 +94,7 @@ fn matrix(n: c_int, ia: &[c_int], ja: &[c_int], a: &[f64]) -> Result<Csr> {
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiUpdateSubdomain(
-    ff: Handle,
+    ff: HandlePointer,
     s: c_int,
     n: c_int,
     ia: *const c_int,
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn FetiFetiUpdateSubdomain(
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiUpdateMatrices(
-    ff: Handle,
+    ff: HandlePointer,
     n: c_int,
     matrices: *const raw::Mat,
 ) -> c_int {
@@ -133,7 +133,7 @@ pub unsafe extern "C" fn FetiFetiUpdateMatrices(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetMatIS(ff: HandlePointer, a: raw::Mat, body: c_int) -> c_int {
     together(ff, c"FetiFetiSetMatIS", |o| {
         o.set_matis(&lent(not_null(a, "Mat")?, &o.session)?, body)
     })
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) 
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddMatIS(
-    ff: Handle,
+    ff: HandlePointer,
     a: raw::Mat,
     numbers: raw::IS,
     body: c_int,
@@ -157,10 +157,13 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNullSpace) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetNearNullSpace(
+    ff: HandlePointer,
+    space: raw::MatNullSpace,
+) -> c_int {
     together(ff, c"FetiFetiSetNearNullSpace", |o| {
         // SAFETY: the host hands over NULL or a live null space (fetifeti.h).
-        o.near = unsafe { Attached::of_host(space, &o.session) }?;
+        o.near = unsafe { AttachedNullSpace::of_host(space, &o.session) }?;
         o.changed.whole = true;
         Ok(())
     })
@@ -168,7 +171,7 @@ pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNul
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetCoordinates(
-    ff: Handle,
+    ff: HandlePointer,
     dim: c_int,
     n: c_int,
     coords: *const f64,

@@ -1,10 +1,10 @@
 //! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal unknowns, contact; their manual pages
 //! are there.
 
-use super::handle::{alone, array, lent, list, not_null, starts, together, Handle};
-use super::numbering::Numbering;
+use super::handle::{alone, array, lent, list, not_null, starts, together, HandlePointer};
+use super::numbering::HostNumbering;
 use super::object::Object;
-use super::rows::{pairs, row_kind, HostRow, Origin, Side};
+use super::rows::{pairs, row_kind, HostRow, PairSide, RowOrigin};
 use crate::Result;
 use base::Fault;
 use petsc::raw;
@@ -12,7 +12,7 @@ use std::ffi::c_int;
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
-    ff: Handle,
+    ff: HandlePointer,
     dofs: raw::IS,
     values: raw::Vec,
 ) -> c_int {
@@ -31,12 +31,12 @@ pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetNeumannBoundaries(ff: Handle, _dofs: raw::IS) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetNeumannBoundaries(ff: HandlePointer, _dofs: raw::IS) -> c_int {
     together(ff, c"FetiFetiSetNeumannBoundaries", |_| Ok(()))
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: Handle, dofs: raw::IS) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: HandlePointer, dofs: raw::IS) -> c_int {
     together(ff, c"FetiFetiSetPrimalDofs", |o| {
         o.primal = list(o, dofs)?;
         o.changed.whole = true;
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: Handle, dofs: raw::IS) -> c_i
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactRows(
-    ff: Handle,
+    ff: HandlePointer,
     n: c_int,
     ia: *const c_int,
     ja: *const c_int,
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn FetiFetiSetContactRows(
 #[allow(clippy::too_many_arguments)]
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactRowsByMatrix(
-    ff: Handle,
+    ff: HandlePointer,
     n: c_int,
     ia: *const c_int,
     matrix: *const c_int,
@@ -103,18 +103,18 @@ fn contact_rows(
             rows.push(contact_row(r, terms, gap[r], kind[r])?);
         }
     }
-    o.rows.retain(|row| row.origin != Origin::Rows);
+    o.rows.retain(|row| row.origin != RowOrigin::Rows);
     o.rows.extend(rows);
     o.changed.rows = true;
     Ok(())
 }
 
 /// The unknown of a term of row `r`: number `dof` of matrix `whose`, or of all unknowns where that is negative.
-fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(Numbering, u32)> {
+fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(HostNumbering, u32)> {
     let (numbering, n) = match usize::try_from(whose) {
-        Err(_) => (Numbering::All, None),
+        Err(_) => (HostNumbering::All, None),
         Ok(k) => (
-            Numbering::Matrix(k),
+            HostNumbering::Matrix(k),
             Some(o.size_of(k, &format!("contact row {r} names"))?),
         ),
     };
@@ -133,7 +133,11 @@ fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(Numbering, 
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetContactGaps(ff: Handle, n: c_int, gap: *const f64) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetContactGaps(
+    ff: HandlePointer,
+    n: c_int,
+    gap: *const f64,
+) -> c_int {
     alone(ff, c"FetiFetiSetContactGaps", |o| {
         if n as usize != o.rows.len() {
             return Err(Fault::Sizes.error(format!(
@@ -158,7 +162,7 @@ pub unsafe extern "C" fn FetiFetiSetContactGaps(ff: Handle, n: c_int, gap: *cons
 
 fn contact_row(
     r: usize,
-    mut terms: Vec<(Numbering, u32, f64)>,
+    mut terms: Vec<(HostNumbering, u32, f64)>,
     gap: f64,
     number: c_int,
 ) -> Result<HostRow> {
@@ -170,7 +174,7 @@ fn contact_row(
     }
     let kind = row_kind(number, || format!("contact row {r} is"))?;
     Ok(HostRow {
-        origin: Origin::Rows,
+        origin: RowOrigin::Rows,
         terms,
         gap,
         kind,
@@ -179,7 +183,7 @@ fn contact_row(
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactPairs(
-    ff: Handle,
+    ff: HandlePointer,
     a: c_int,
     first: raw::IS,
     b: c_int,
@@ -189,7 +193,7 @@ pub unsafe extern "C" fn FetiFetiSetContactPairs(
 ) -> c_int {
     together(ff, c"FetiFetiSetContactPairs", |o| {
         if first.is_null() && second.is_null() {
-            o.rows.retain(|row| row.origin != Origin::Pairs);
+            o.rows.retain(|row| row.origin != RowOrigin::Pairs);
         } else {
             let rows = o
                 .session
@@ -210,8 +214,8 @@ fn contact_pairs(
     kind: c_int,
 ) -> Result<Vec<HostRow>> {
     let kind = row_kind(kind, || "contact pairs are".into())?;
-    let first = Side::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
-    let second = Side::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
+    let first = PairSide::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
+    let second = PairSide::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
     let gap = if gap.is_null() {
         &[]
     } else {

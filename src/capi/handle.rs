@@ -8,16 +8,16 @@ use petsc::{raw, Session};
 use std::ffi::{c_int, CStr};
 
 /// The object that a `FetiFeti` points to.
-pub struct Held {
+pub struct HandleObject {
     magic: u64,
     comm: raw::MPI_Comm,
     object: Object,
 }
 
-impl Held {
+impl HandleObject {
     /// An object on the ranks of `comm`.
-    pub fn new(comm: raw::MPI_Comm, session: Session) -> Held {
-        Held {
+    pub fn new(comm: raw::MPI_Comm, session: Session) -> HandleObject {
+        HandleObject {
             magic: MAGIC,
             comm,
             object: Object::new(session),
@@ -29,9 +29,9 @@ impl Held {
 const MAGIC: u64 = 0x4645_5449_4645_5449;
 
 /// The pointer that C calls `FetiFeti`.
-pub(super) type Handle = *mut Held;
+pub(super) type HandlePointer = *mut HandleObject;
 
-fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
+fn held<'a>(ff: HandlePointer) -> Result<&'a mut HandleObject> {
     let none = || Fault::Null.error("the FetiFeti is NULL, expected one from FetiFetiCreate");
     // SAFETY: the header asks for NULL or an object of FetiFetiCreate.
     let held = unsafe { ff.as_mut() }.ok_or_else(none)?;
@@ -42,7 +42,7 @@ fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
 }
 
 /// Destroys an object.
-pub(super) fn destroy(ff: Handle) -> Result<()> {
+pub(super) fn destroy(ff: HandlePointer) -> Result<()> {
     held(ff)?.magic = 0;
     // SAFETY: from Box::into_raw in FetiFetiCreate; whoever calls this forgets it.
     drop(unsafe { Box::from_raw(ff) });
@@ -51,7 +51,7 @@ pub(super) fn destroy(ff: Handle) -> Result<()> {
 
 /// A call in which all ranks of the object take part.
 pub(super) fn together(
-    ff: Handle,
+    ff: HandlePointer,
     name: &'static CStr,
     work: impl FnOnce(&mut Object) -> Result<()>,
 ) -> c_int {
@@ -66,7 +66,7 @@ pub(super) fn together(
 
 /// A call that each rank makes for itself.
 pub(super) fn alone(
-    ff: Handle,
+    ff: HandlePointer,
     name: &'static CStr,
     work: impl FnOnce(&mut Object) -> Result<()>,
 ) -> c_int {

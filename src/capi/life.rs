@@ -1,7 +1,7 @@
 //! The functions of `wrappers/fetifeti.h` that create, set up, use and destroy a solver; their manual pages are there.
 
 use super::error::{classified, raise};
-use super::handle::{alone, destroy, lent, not_null, put, together, Handle, Held};
+use super::handle::{alone, destroy, lent, not_null, put, together, HandleObject, HandlePointer};
 use super::monitor::{Function, Monitor};
 use super::object::Object;
 use crate::Result;
@@ -10,7 +10,7 @@ use petsc::{raw, Session};
 use std::ffi::{c_char, c_int, c_void, CStr};
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut HandlePointer) -> c_int {
     match super::processor() {
         0 => create(comm, ff),
         code => code,
@@ -19,7 +19,7 @@ pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) ->
 
 /// Not inlined: whatever it needs stands behind the question for the processor.
 #[inline(never)]
-fn create(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
+fn create(comm: raw::MPI_Comm, ff: *mut HandlePointer) -> c_int {
     let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
         // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin
         // and end.
@@ -30,20 +30,23 @@ fn create(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
                 Fault::Null.error("there is no place for the FetiFeti, expected a pointer to one")
             );
         }
-        put(ff, Box::into_raw(Box::new(Held::new(comm, session))));
+        put(
+            ff,
+            Box::into_raw(Box::new(HandleObject::new(comm, session))),
+        );
         Ok(())
     });
     raise(code, c"FetiFetiCreate", Some(comm))
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiCreateFortran(comm: c_int, ff: *mut Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiCreateFortran(comm: c_int, ff: *mut HandlePointer) -> c_int {
     // SAFETY: the number of a communicator in Fortran.
     unsafe { FetiFetiCreate(raw::ff_comm_f2c(comm), ff) }
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut HandlePointer) -> c_int {
     // SAFETY: NULL, or a pointer to an object or NULL.
     if ff.is_null() || unsafe { *ff }.is_null() {
         return 0;
@@ -59,7 +62,7 @@ pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiReset(ff: HandlePointer) -> c_int {
     together(ff, c"FetiFetiReset", |o| {
         let mut fresh = Object::new(o.session.clone());
         fresh.prefix = std::mem::take(&mut o.prefix);
@@ -70,7 +73,10 @@ pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_char) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(
+    ff: HandlePointer,
+    prefix: *const c_char,
+) -> c_int {
     alone(ff, c"FetiFetiSetOptionsPrefix", |o| {
         o.prefix = if prefix.is_null() {
             String::new()
@@ -84,12 +90,12 @@ pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_c
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetFromOptions(ff: Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetFromOptions(ff: HandlePointer) -> c_int {
     together(ff, c"FetiFetiSetFromOptions", Object::set_from_options)
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiView(ff: Handle, viewer: raw::PetscViewer) -> c_int {
+pub unsafe extern "C" fn FetiFetiView(ff: HandlePointer, viewer: raw::PetscViewer) -> c_int {
     together(ff, c"FetiFetiView", |o| show(o, viewer))
 }
 
@@ -103,12 +109,12 @@ fn show(o: &Object, viewer: raw::PetscViewer) -> Result<()> {
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetUp(ff: Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetUp(ff: HandlePointer) -> c_int {
     together(ff, c"FetiFetiSetUp", Object::set_up)
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> c_int {
+pub unsafe extern "C" fn FetiFetiSolve(ff: HandlePointer, b: raw::Vec, x: raw::Vec) -> c_int {
     together(ff, c"FetiFetiSolve", |o| {
         let b = lent(not_null(b, "right-hand side")?, &o.session)?;
         let x = lent(not_null(x, "solution")?, &o.session)?;
@@ -118,7 +124,7 @@ pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> 
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiContactMonitorSet(
-    ff: Handle,
+    ff: HandlePointer,
     function: Option<Function>,
     context: *mut c_void,
 ) -> c_int {

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::surface::Surface;
+use super::surface::HostSurface;
 use crate::substructures::RowKind;
 use crate::Result;
 use base::Fault;
 use bytemuck::{bytes_of, Pod, Zeroable};
-use elements::mortar::{self, reach, Sample, Side};
+use elements::mortar::{self, reach, MortarSample, MortarSide};
 use parallel::parcels::Parcels;
 use petsc::Session;
 
@@ -29,7 +29,7 @@ pub struct GivenMortar<'a> {
 }
 
 /// A pair of surfaces, on all ranks.
-pub struct Mortar {
+pub struct HostMortar {
     pub surfaces: [usize; 2],
     pub kind: RowKind,
     pub adjust: f64,
@@ -37,21 +37,21 @@ pub struct Mortar {
     pub gaps: Vec<f64>,
     /// Whether a node of the first surface must not carry a multiplier.
     pub without: Vec<bool>,
-    pub samples: Vec<Sample>,
+    pub samples: Vec<MortarSample>,
 }
 
 /// The surfaces that have been added, on a rank.
-pub struct Surfaces<'a> {
+pub struct HostSurfaces<'a> {
     pub session: &'a Session,
-    pub list: &'a [Surface],
+    pub list: &'a [HostSurface],
 }
 
-impl Surfaces<'_> {
+impl HostSurfaces<'_> {
     /// One of them.
     ///
     /// # Errors
     /// A number that there is not.
-    fn surface(&self, number: i32) -> Result<&Surface> {
+    fn surface(&self, number: i32) -> Result<&HostSurface> {
         let found = usize::try_from(number).ok().and_then(|k| self.list.get(k));
         found.ok_or_else(|| {
             Fault::OutOfRange.error(format!(
@@ -65,7 +65,7 @@ impl Surfaces<'_> {
     ///
     /// # Errors
     /// Surfaces that do not face each other, and numbers that are not admissible; the same on all ranks.
-    pub fn mortar(&self, given: &GivenMortar<'_>) -> Result<Mortar> {
+    pub fn mortar(&self, given: &GivenMortar<'_>) -> Result<HostMortar> {
         self.session.agree(self.check(given))?;
         let all = self.sent(given).gather_all(self.session.comm());
         let facts = |k: usize| all[k].get(0).0;
@@ -93,7 +93,7 @@ impl Surfaces<'_> {
             }
         }
         let of = |k: usize| at.get(&k).copied().unwrap_or_default();
-        Ok(Mortar {
+        Ok(HostMortar {
             surfaces: pair,
             kind: given.kind,
             adjust: given.adjust.max(0.0),
@@ -186,7 +186,12 @@ struct MortarNode {
 ///
 /// # Errors
 /// Sides that do not face each other; if they would with the faces of one of them the other way round, it is said.
-fn samples(numbers: [usize; 2], first: &Side, second: &Side, wanted: f64) -> Result<Vec<Sample>> {
+fn samples(
+    numbers: [usize; 2],
+    first: &MortarSide,
+    second: &MortarSide,
+    wanted: f64,
+) -> Result<Vec<MortarSample>> {
     let reach = if wanted > 0.0 {
         reach(first, second, wanted)
     } else {

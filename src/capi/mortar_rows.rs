@@ -2,23 +2,23 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::mortar::Mortar;
-use super::numbering::Numbering;
+use super::mortar::HostMortar;
+use super::numbering::HostNumbering;
 use super::object::Object;
-use super::rows::Origin;
-use super::surface::Surface;
+use super::rows::RowOrigin;
+use super::surface::HostSurface;
 use crate::embed::{GivenResults, GivenRow};
 use crate::substructures::RowKind;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::Fault;
 use bytemuck::{Pod, Zeroable};
-use elements::mortar::{distance, rows, Row};
+use elements::mortar::{distance, rows, DualMortarRow};
 use parallel::exchange::gather_all;
 
 /// Where a row belongs, on the rank that gives it.
 #[derive(Debug, Clone, Copy)]
-pub struct Placed {
+pub struct MortarRowOwner {
     mortar: usize,
     /// The node of its first surface.
     node: u32,
@@ -29,7 +29,7 @@ pub struct Placed {
 
 /// How many nodes of a mortar carry multipliers, and why others do not.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Counts {
+pub struct MultiplierCounts {
     pub carry: usize,
     pub held: usize,
     pub tied: usize,
@@ -39,13 +39,13 @@ pub struct Counts {
 #[derive(Default)]
 pub struct MortarRows {
     /// The rows that this rank gives, in the order in which it gives them.
-    pub placed: Vec<Placed>,
-    pub counts: Vec<Counts>,
+    pub placed: Vec<MortarRowOwner>,
+    pub counts: Vec<MultiplierCounts>,
 }
 
 /// The result at a node, one component.
 #[derive(Debug, Clone, Copy)]
-pub struct AtNode {
+pub struct NodeResult {
     pub multiplier: f64,
     pub area: f64,
     pub gap: f64,
@@ -53,15 +53,15 @@ pub struct AtNode {
 }
 
 /// Results by mortar, node of the first surface and component, on all ranks.
-pub type AtNodes = BTreeMap<(usize, u32, usize), AtNode>;
+pub type AtNodes = BTreeMap<(usize, u32, usize), NodeResult>;
 
 /// Unknowns by their global numbers: whether they are held, and which are tied so far.
-struct Known {
+struct ConstrainedUnknowns {
     held: HashMap<u32, bool>,
     tied: HashSet<u32>,
 }
 
-impl Known {
+impl ConstrainedUnknowns {
     fn is_held(&self, dof: Option<u32>) -> bool {
         dof.is_none_or(|d| self.held[&d])
     }
@@ -72,7 +72,7 @@ impl Known {
 }
 
 /// The numbers among all unknowns of each node of a surface; `None` where there is no unknown.
-type Numbers = Vec<Vec<Option<u32>>>;
+type NodeUnknowns = Vec<Vec<Option<u32>>>;
 
 /// Whether an unknown is known; `None` if this rank's matrices do not have it.
 pub type IsHeld<'a> = &'a dyn Fn(u32) -> Option<bool>;
@@ -91,10 +91,11 @@ impl Object {
         if self.mortars.is_empty() {
             return Ok(out);
         }
-        let numbers: Result<Vec<Numbers>> = self.surfaces.iter().map(|s| self.numbers(s)).collect();
+        let numbers: Result<Vec<NodeUnknowns>> =
+            self.surfaces.iter().map(|s| self.numbers(s)).collect();
         let numbers = self.session.agree(numbers)?;
         let mut known = self.known(held, &numbers)?;
-        out.counts = vec![Counts::default(); self.mortars.len()];
+        out.counts = vec![MultiplierCounts::default(); self.mortars.len()];
         // Ties come first: nodes that they hold are not in contact.
         for kind in [RowKind::Equality, RowKind::Inequality] {
             for (m, mortar) in self
@@ -103,7 +104,7 @@ impl Object {
                 .enumerate()
                 .filter(|(_, m)| m.kind == kind)
             {
-                let pair = Pair {
+                let pair = MortarPair {
                     mortar,
                     sides: mortar.surfaces.map(|s| &self.surfaces[s]),
                     numbers: mortar.surfaces.map(|s| &numbers[s]),
@@ -126,7 +127,7 @@ impl Object {
                     }
                     if pair.sides[0].giver[node as usize] == self.session.rank() {
                         rows.push(row);
-                        out.placed.push(Placed {
+                        out.placed.push(MortarRowOwner {
                             mortar: m,
                             node,
                             component,
@@ -140,7 +141,7 @@ impl Object {
     }
 
     /// The numbers among all unknowns of the nodes of a surface.
-    fn numbers(&self, surface: &Surface) -> Result<Numbers> {
+    fn numbers(&self, surface: &HostSurface) -> Result<NodeUnknowns> {
         let number = |&dof: &i32| {
             let Ok(dof) = u32::try_from(dof) else {
                 return Ok(None);
@@ -153,7 +154,7 @@ impl Object {
 
     /// The state of the unknowns of surfaces: whether they are held, and which are tied by pairs of the host.
     /// Collective.
-    fn known(&self, held: IsHeld, numbers: &[Numbers]) -> Result<Known> {
+    fn known(&self, held: IsHeld, numbers: &[NodeUnknowns]) -> Result<ConstrainedUnknowns> {
         let all = distinct(numbers.iter().flatten().flatten().filter_map(|d| *d));
         let mine = all.iter().filter_map(|&dof| Some([dof, held(dof)?.into()]));
         let mine: Vec<[u32; 2]> = mine.collect();
@@ -175,21 +176,21 @@ impl Object {
         }
         // Pairs of the host that are tied.
         let mut mine = Vec::new();
-        let pairs = self.rows.iter().filter(|r| r.origin == Origin::Pairs);
+        let pairs = self.rows.iter().filter(|r| r.origin == RowOrigin::Pairs);
         for row in pairs.filter(|r| r.kind == RowKind::Equality) {
             for &(whose, dof, _) in &row.terms {
                 mine.push(self.number(whose, dof, "contact pair")?);
             }
         }
         let tied = gather_all(self.session.comm(), &mine).concat();
-        Ok(Known {
+        Ok(ConstrainedUnknowns {
             held,
             tied: tied.into_iter().collect(),
         })
     }
 
     /// Results of all mortars, on all ranks. Collective.
-    pub fn at_nodes(&self, placed: &[Placed], given: &GivenResults) -> AtNodes {
+    pub fn at_nodes(&self, placed: &[MortarRowOwner], given: &GivenResults) -> AtNodes {
         let first = given.multipliers.len() - placed.len();
         let sent = placed.iter().zip(first..).map(|(at, k)| SentResult {
             mortar: at.mortar,
@@ -202,7 +203,7 @@ impl Object {
         });
         let all = gather_all(self.session.comm(), &sent.collect::<Vec<_>>()).concat();
         let one = |w: SentResult| {
-            let at = AtNode {
+            let at = NodeResult {
                 multiplier: w.multiplier,
                 area: w.area,
                 gap: w.gap,
@@ -229,7 +230,7 @@ struct SentResult {
 
 impl Object {
     /// A line on a mortar: how many nodes carry multipliers and why others do not.
-    pub fn mortar_text(&self, m: usize, counts: &Counts) -> String {
+    pub fn mortar_text(&self, m: usize, counts: &MultiplierCounts) -> String {
         let Some(mortar) = self.mortars.get(m) else {
             return String::new();
         };
@@ -238,7 +239,7 @@ impl Object {
             RowKind::Inequality => "contact",
         };
         let ([a, b], n) = (mortar.surfaces, mortar.gaps.len());
-        let Counts { carry, held, tied } = counts;
+        let MultiplierCounts { carry, held, tied } = counts;
         format!(
             "  mortar {m}: {what} of surfaces {a} and {b}, {carry} of {n} nodes carry multipliers \
              ({held} are held, {tied} tied elsewhere)\n"
@@ -249,8 +250,8 @@ impl Object {
     ///
     /// # Errors
     /// One that its matrix does not have.
-    pub fn number(&self, whose: Numbering, dof: u32, what: &str) -> Result<u32> {
-        let Numbering::Matrix(k) = whose else {
+    pub fn number(&self, whose: HostNumbering, dof: u32, what: &str) -> Result<u32> {
+        let HostNumbering::Matrix(k) = whose else {
             return Ok(dof);
         };
         let n = self.size_of(k, &format!("{what}s name"))?;
@@ -270,17 +271,17 @@ impl Object {
 }
 
 /// A mortar with its surfaces, the one with the multipliers first.
-struct Pair<'a> {
-    mortar: &'a Mortar,
-    sides: [&'a Surface; 2],
-    numbers: [&'a Numbers; 2],
+struct MortarPair<'a> {
+    mortar: &'a HostMortar,
+    sides: [&'a HostSurface; 2],
+    numbers: [&'a NodeUnknowns; 2],
 }
 
 /// A row, its component, D_p, and its node.
-type Made = (GivenRow, usize, f64, u32);
+type MortarRowData = (GivenRow, usize, f64, u32);
 
-impl Pair<'_> {
-    fn rows(&self, excluded: &dyn Fn(u32) -> bool) -> Vec<Row> {
+impl MortarPair<'_> {
+    fn rows(&self, excluded: &dyn Fn(u32) -> bool) -> Vec<DualMortarRow> {
         let [own, other] = self.sides.map(|s| &s.side);
         let left_out = |k: u32| self.mortar.without[k as usize] || excluded(k);
         rows(own, other, &self.mortar.samples, &left_out, &|_| 1.0)
@@ -291,9 +292,9 @@ impl Pair<'_> {
     }
 
     /// The rows u = u° by component, with a gap where there is one component.
-    fn ties(&self, known: &Known) -> Vec<Made> {
+    fn ties(&self, known: &ConstrainedUnknowns) -> Vec<MortarRowData> {
         let mut out = Vec::new();
-        let mut before: Vec<(Vec<bool>, Vec<Row>)> = Vec::new();
+        let mut before: Vec<(Vec<bool>, Vec<DualMortarRow>)> = Vec::new();
         for c in 0..self.sides[0].components {
             let left_out = |k: u32| {
                 let dof = self.dof(k, c);
@@ -317,7 +318,7 @@ impl Pair<'_> {
     }
 
     /// The rows n · (u − u°) ≤ g; for scalars u − u° ≤ g.
-    fn contacts(&self, known: &Known) -> Vec<Made> {
+    fn contacts(&self, known: &ConstrainedUnknowns) -> Vec<MortarRowData> {
         let [own, other] = self.sides.map(|s| &s.side);
         let components = self.sides[0].components;
         let normals = own.normals();
@@ -331,7 +332,7 @@ impl Pair<'_> {
             let tied = (0..components).any(|c| known.is_tied(self.dof(k, c)));
             tied || moved.all(|c| known.is_held(self.dof(k, c)))
         };
-        let one = |row: Row| {
+        let one = |row: DualMortarRow| {
             let n = along(row.node);
             let apart = match components {
                 // A distance says nothing about a difference of values.
@@ -357,7 +358,7 @@ impl Pair<'_> {
     }
 
     /// The row along a direction.
-    fn given(&self, row: &Row, along: [f64; 3], gap: f64) -> GivenRow {
+    fn given(&self, row: &DualMortarRow, along: [f64; 3], gap: f64) -> GivenRow {
         let mut terms = Vec::new();
         let lists = [(&row.own, 1.0), (&row.other, -1.0)];
         for ((list, sign), numbers) in lists.into_iter().zip(self.numbers) {
@@ -377,11 +378,11 @@ impl Pair<'_> {
     }
 
     /// How many nodes carry multipliers; of the others those that are held or tied.
-    fn counts(&self, known: &Known, made: &[Made]) -> Counts {
+    fn counts(&self, known: &ConstrainedUnknowns, made: &[MortarRowData]) -> MultiplierCounts {
         let carry: HashSet<u32> = made.iter().map(|m| m.3).collect();
-        let mut out = Counts {
+        let mut out = MultiplierCounts {
             carry: carry.len(),
-            ..Counts::default()
+            ..MultiplierCounts::default()
         };
         for (k, node) in (0..).zip(self.numbers[0]) {
             if carry.contains(&k) {

@@ -6,12 +6,12 @@ use base::Fault;
 use petsc::{Session, Vec as PetscVec};
 
 /// A vector of the host with the right layout.
-pub struct Given {
+pub struct HostVector {
     whole: PetscVec,
     parts: Option<Vec<PetscVec>>,
 }
 
-impl Given {
+impl HostVector {
     /// Checks a vector against `layout`; `what` is its name in messages.
     ///
     /// # Errors
@@ -22,7 +22,7 @@ impl Given {
         what: &str,
         layout: &PetscVec,
         stack: &Stack,
-    ) -> Result<Given> {
+    ) -> Result<HostVector> {
         let parts = v.parts()?;
         match &parts {
             None => fits(session, v, layout, what)?,
@@ -45,7 +45,7 @@ impl Given {
             }
         }
         let whole = v.clone();
-        Ok(Given { whole, parts })
+        Ok(HostVector { whole, parts })
     }
 
     /// A plain vector with the entries: the host's own vector, or `work`. Collective.
@@ -66,7 +66,7 @@ impl Given {
         Ok(work)
     }
 
-    /// Copies the entries back from the vector that [`Given::plain`] returned. Collective.
+    /// Copies the entries back from the vector that [`HostVector::plain`] returned. Collective.
     pub fn take(&self, plain: &PetscVec) -> Result<()> {
         let Some(parts) = &self.parts else {
             return Ok(());

@@ -2,7 +2,7 @@
 
 /// The numbering that a number belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Numbering {
+pub enum HostNumbering {
     /// The numbering of all unknowns.
     All,
     /// The numbering of one matrix; the index counts the matrices in the order in which they were added.

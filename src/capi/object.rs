@@ -3,20 +3,20 @@
 use super::changed::Changed;
 use super::coordinates::{rigid, Coordinates};
 use super::monitor::Monitor;
-use super::mortar::Mortar;
+use super::mortar::HostMortar;
 use super::mortar_rows::{AtNodes, MortarRows};
-use super::nested::Given as GivenVector;
+use super::nested::HostVector as GivenVector;
 use super::rows::HostRow;
-use super::stack::{fits, Given, LocalMatrix, Stack, Told};
-use super::surface::Surface;
+use super::stack::{fits, HostMatrix, LocalMatrix, Stack, StackStates};
+use super::surface::HostSurface;
 use crate::embed::torn::spanned;
-use crate::embed::{Embedded, Outcome, Torn, Work};
+use crate::embed::{Embedded, EmbeddedResult, SetUpWork, Torn};
 use crate::{Error, Result};
 use base::Fault;
 use parallel::exchange::{exchange, highest};
 use parallel::halo::Halo;
 use parallel::owners::Owners;
-use petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
+use petsc::{AttachedNullSpace, Mat, Options, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// The data of a `FetiFeti`.
@@ -28,23 +28,23 @@ pub struct Object {
     /// The block size, if given.
     pub block_size: Option<usize>,
     /// Subdomains in the numbering of all unknowns.
-    pub subdomains: Vec<Given>,
+    pub subdomains: Vec<HostMatrix>,
     /// Matrices that are numbered one after the other; then there are no other subdomains.
     pub stack: Stack,
     /// The data from the matrix of FetiFetiSetMatIS, besides its entries.
-    pub matis: Option<Told>,
+    pub matis: Option<StackStates>,
     /// The block size of a matrix that was added with numbers.
     pub block_size_of_added: usize,
-    pub near: Option<Attached>,
+    pub near: Option<AttachedNullSpace>,
     pub coordinates: Option<Coordinates>,
     pub held: Vec<i32>,
     pub held_values: Option<PetscVec>,
     pub primal: Vec<i32>,
     /// The rows that this rank gives, in their order.
     pub rows: Vec<HostRow>,
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<HostSurface>,
     /// The pairs of surfaces that mortar rows join.
-    pub mortars: Vec<Mortar>,
+    pub mortars: Vec<HostMortar>,
     /// Their rows, in the present solver.
     pub mortar_rows: MortarRows,
     /// Their results, of the last solve.
@@ -54,11 +54,11 @@ pub struct Object {
     /// Changes on this rank since the last set-up.
     pub changed: Changed,
     /// Work that set-ups have taken so far.
-    pub work_done: Work,
+    pub work_done: SetUpWork,
     /// Called after each step of the contact loop.
     pub monitor: Option<Monitor>,
     pub solver: Option<Embedded>,
-    pub outcome: Option<Outcome>,
+    pub outcome: Option<EmbeddedResult>,
     /// Plain copies of nested vectors: right-hand side, solution, held values.
     pub(super) work: [Option<PetscVec>; 3],
 }
@@ -87,7 +87,7 @@ impl Object {
             bodies: 0,
             view: false,
             changed: Changed::default(),
-            work_done: Work::default(),
+            work_done: SetUpWork::default(),
             monitor: None,
             solver: None,
             outcome: None,
@@ -146,7 +146,7 @@ impl Object {
     }
 
     /// Adds a subdomain in the numbering of all unknowns.
-    pub fn push(&mut self, given: Given) {
+    pub fn push(&mut self, given: HostMatrix) {
         self.subdomains.push(given);
         self.changed.whole = true;
     }
@@ -235,7 +235,10 @@ impl Object {
                 vectors.push(self.session.agree(given)?.plain(|| layout.duplicate())?);
             }
             let constants = near.constants;
-            return Ok(Some(spanned(layout, Attached { constants, vectors })?));
+            return Ok(Some(spanned(
+                layout,
+                AttachedNullSpace { constants, vectors },
+            )?));
         }
         let of_matrices = match &self.matis {
             _ if !self.stack.is_empty() => self.stack.modes(layout)?,

@@ -2,8 +2,8 @@
 
 use super::error::{remark, status, UNFIT};
 use super::handle::lent;
-use crate::embed::{Embedded, Local, SetUp, Torn, Work};
-use crate::feti::krylov::solve::Look;
+use crate::embed::{Embedded, Local, SetUp, SetUpWork, Torn};
+use crate::feti::krylov::solve::JudgeTiming;
 use crate::settings::MethodSettings;
 use crate::status::Status;
 use crate::{Error, Result};
@@ -30,7 +30,7 @@ const NAME: usize = 16;
 
 /// The data that -ksp_view shows.
 #[repr(C)]
-pub struct Facts {
+pub struct ViewData {
     bodies: c_int,
     floating: c_int,
     kernel: c_int,
@@ -46,14 +46,14 @@ pub struct Facts {
 const LINE: usize = 256;
 
 /// The solver behind a KSP.
-pub struct Solver {
+pub struct PluginSolver {
     embedded: Embedded,
-    work: Work,
+    work: SetUpWork,
 }
 
 /// The result of a solve.
 #[repr(C)]
-pub struct Report {
+pub struct PluginReport {
     iterations: c_int,
     /// KSPConvergedReason.
     reason: c_int,
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         // SAFETY: by the caller; NULL takes its place.
         let old = unsafe { std::mem::replace(&mut *solver, std::ptr::null_mut()) };
         // SAFETY: by the caller.
-        let old = (!old.is_null()).then(|| unsafe { Box::from_raw(old.cast::<Solver>()) });
+        let old = (!old.is_null()).then(|| unsafe { Box::from_raw(old.cast::<PluginSolver>()) });
         let made = setup(&session, &a, &prefix, wishes, old.map(|old| *old));
         // A wrong input stops the host with an error. A matrix that turns out to be no stiffness matrix is reported by
         // KSPGetConvergedReason.
@@ -116,15 +116,15 @@ fn setup(
     a: &Mat,
     prefix: &str,
     wishes: &Wishes,
-    old: Option<Solver>,
-) -> Result<Solver> {
-    let (old, mut work) = old.map_or((None, Work::default()), |o| (Some(o.embedded), o.work));
+    old: Option<PluginSolver>,
+) -> Result<PluginSolver> {
+    let (old, mut work) = old.map_or((None, SetUpWork::default()), |o| (Some(o.embedded), o.work));
     let make = || match old.map(|old| renewed(old, a)).transpose()?.flatten() {
         Some(embedded) => Ok((embedded, SetUp::Numbers)),
         None => Ok((whole(session, a, prefix, wishes)?, SetUp::Whole)),
     };
     let (embedded, _) = work.count(session, make, |made| Some(made.1))?;
-    Ok(Solver { embedded, work })
+    Ok(PluginSolver { embedded, work })
 }
 
 /// The solver for other entries of its matrix, or another one of the same structure; `None` if the structure is
@@ -195,12 +195,12 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     wishes: *const Wishes,
     b: raw::Vec,
     x: raw::Vec,
-    report: *mut Report,
+    report: *mut PluginReport,
 ) -> c_int {
     status("KSPSolve_FETIFETI", |at_work| {
         // A monitor may ask for the present solution while this runs: hence no unique reference.
         // SAFETY: by the caller.
-        let (solver, wishes) = unsafe { (&(*solver.cast::<Solver>()).embedded, &*wishes) };
+        let (solver, wishes) = unsafe { (&(*solver.cast::<PluginSolver>()).embedded, &*wishes) };
         *at_work = Some(solver.session().clone());
         let (b, x) = (lent(b, solver.session())?, lent(x, solver.session())?);
         forward(solver, wishes)?;
@@ -209,12 +209,12 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         let mut outcome = solver.solve(&b, &x, &|x, look| {
             if wishes.goal < 0.0 {
                 // The host asked for the test of the jumps alone, which has not been made before the first iteration.
-                return Ok((look == Look::Before).then_some(1.0));
+                return Ok((look == JudgeTiming::Before).then_some(1.0));
             }
             a.mult(x, &r)?;
             r.aypx(-1.0, &b)?;
             let norm = r.norm2()?;
-            if look == Look::Before {
+            if look == JudgeTiming::Before {
                 return Ok((norm > wishes.goal).then_some(1.0));
             }
             // A residual that is no longer halved has reached the rounding errors.
@@ -246,7 +246,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         let (largest, smallest) = outcome.spectrum.unwrap_or_default();
         // SAFETY: by the caller.
         unsafe {
-            *report = Report {
+            *report = PluginReport {
                 largest,
                 smallest,
                 iterations: outcome.iterations as c_int,
@@ -288,7 +288,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
 ) -> c_int {
     status("KSPBuildSolution_FETIFETI", |_| {
         // SAFETY: by the caller.
-        let solver = unsafe { &(*solver.cast::<Solver>()).embedded };
+        let solver = unsafe { &(*solver.cast::<PluginSolver>()).embedded };
         let x = lent(x, solver.session())?;
         // SAFETY: by the caller.
         unsafe { *there = solver.current(&x)?.into() };
@@ -303,7 +303,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP {
     // SAFETY: by the caller.
-    unsafe { &(*solver.cast::<Solver>()).embedded }
+    unsafe { &(*solver.cast::<PluginSolver>()).embedded }
         .solver()
         .ksp()
         .raw()
@@ -314,14 +314,14 @@ pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP 
 /// # Safety
 /// As above; `facts` is valid.
 #[no_mangle]
-pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut Facts) {
+pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut ViewData) {
     // SAFETY: by the caller.
-    let Solver { embedded, work } = unsafe { &*solver.cast::<Solver>() };
+    let PluginSolver { embedded, work } = unsafe { &*solver.cast::<PluginSolver>() };
     let solver = embedded.solver();
     let (known, problem) = (solver.facts(), solver.problem());
     // SAFETY: by the caller.
     unsafe {
-        *facts = Facts {
+        *facts = ViewData {
             bodies: problem.n_bodies as c_int,
             floating: known.floating_bodies as c_int,
             kernel: known.kernel_dimension as c_int,
@@ -343,7 +343,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
 pub unsafe extern "C" fn fetifeti_plugin_free(solver: *mut c_void) {
     status("KSPReset_FETIFETI", |_| {
         // SAFETY: by the caller.
-        drop(unsafe { Box::from_raw(solver.cast::<Solver>()) });
+        drop(unsafe { Box::from_raw(solver.cast::<PluginSolver>()) });
         Ok(())
     });
 }

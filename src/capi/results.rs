@@ -1,12 +1,12 @@
 //! The functions of `wrappers/fetifeti.h` that return the results of a solve.
 
-use super::handle::{alone, put, Handle};
+use super::handle::{alone, put, HandlePointer};
 use base::Fault;
 use petsc::raw;
 use std::ffi::c_int;
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetIterations(ff: HandlePointer, its: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetIterations", |o| {
         put(its, o.outcome()?.iterations as c_int);
         Ok(())
@@ -14,7 +14,10 @@ pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetConvergedReason(
+    ff: HandlePointer,
+    reason: *mut c_int,
+) -> c_int {
     alone(ff, c"FetiFetiGetConvergedReason", |o| {
         put(reason, o.outcome()?.status.number());
         Ok(())
@@ -22,7 +25,7 @@ pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_i
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: HandlePointer, steps: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetContactSteps", |o| {
         put(steps, o.outcome()?.steps as c_int);
         Ok(())
@@ -30,7 +33,11 @@ pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) 
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mut f64) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetSpectrum(
+    ff: HandlePointer,
+    min: *mut f64,
+    max: *mut f64,
+) -> c_int {
     alone(ff, c"FetiFetiGetSpectrum", |o| {
         let (largest, smallest) = o.outcome()?.spectrum.unwrap_or_default();
         put(min, smallest);
@@ -40,7 +47,7 @@ pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mu
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetKKT(ff: HandlePointer, kkt: *mut f64) -> c_int {
     alone(ff, c"FetiFetiGetKKT", |o| {
         let k = o.outcome()?.kkt;
         put(
@@ -57,7 +64,11 @@ pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *mut f64) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetMultipliers(
+    ff: HandlePointer,
+    n: c_int,
+    lambda: *mut f64,
+) -> c_int {
     alone(ff, c"FetiFetiGetMultipliers", |o| {
         o.outcome()?;
         let mut found = o.solver()?.given().unwrap_or_default().multipliers;
@@ -78,7 +89,7 @@ pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *m
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetInnerKSP(ff: Handle, ksp: *mut raw::KSP) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetInnerKSP(ff: HandlePointer, ksp: *mut raw::KSP) -> c_int {
     alone(ff, c"FetiFetiGetInnerKSP", |o| {
         put(ksp, o.solver()?.solver().ksp().raw());
         Ok(())

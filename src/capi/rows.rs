@@ -1,6 +1,6 @@
 //! The rows that a rank gives: their terms refer to unknowns of all bodies, or to unknowns of one matrix.
 
-use super::numbering::Numbering;
+use super::numbering::HostNumbering;
 use super::object::Object;
 use crate::embed::GivenRow;
 use crate::substructures::RowKind;
@@ -9,7 +9,7 @@ use base::Fault;
 
 /// The function that gave a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
+pub enum RowOrigin {
     /// FetiFetiSetContactRows.
     Rows,
     /// FetiFetiSetContactPairs.
@@ -18,9 +18,9 @@ pub enum Origin {
 
 /// A row as the host gave it.
 pub struct HostRow {
-    pub origin: Origin,
+    pub origin: RowOrigin,
     /// Unknowns and coefficients.
-    pub terms: Vec<(Numbering, u32, f64)>,
+    pub terms: Vec<(HostNumbering, u32, f64)>,
     pub gap: f64,
     pub kind: RowKind,
 }
@@ -38,21 +38,21 @@ pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> 
 }
 
 /// The unknowns on one side of the pairs, and their numbering.
-pub struct Side {
-    pub numbering: Numbering,
+pub struct PairSide {
+    pub numbering: HostNumbering,
     pub dofs: Vec<i32>,
 }
 
-impl Side {
+impl PairSide {
     /// `matrix` is the index from C: negative for the numbering of all unknowns.
     ///
     /// # Errors
     /// A matrix that does not exist, or a number that it does not have.
-    pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<Side> {
+    pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<PairSide> {
         let (numbering, n) = match usize::try_from(matrix) {
-            Err(_) => (Numbering::All, None),
+            Err(_) => (HostNumbering::All, None),
             Ok(k) => (
-                Numbering::Matrix(k),
+                HostNumbering::Matrix(k),
                 Some(o.size_of(k, "contact pairs name")?),
             ),
         };
@@ -67,7 +67,7 @@ impl Side {
                 o.session.rank()
             )));
         }
-        Ok(Side { numbering, dofs })
+        Ok(PairSide { numbering, dofs })
     }
 }
 
@@ -77,8 +77,8 @@ impl Side {
 /// Sides of different lengths, a gap that is not finite, the same unknown on both sides.
 pub fn pairs(
     rank: usize,
-    first: &Side,
-    second: &Side,
+    first: &PairSide,
+    second: &PairSide,
     gap: &[f64],
     kind: RowKind,
 ) -> Result<Vec<HostRow>> {
@@ -103,7 +103,7 @@ pub fn pairs(
             )));
         }
         rows.push(HostRow {
-            origin: Origin::Pairs,
+            origin: RowOrigin::Pairs,
             terms: vec![
                 (first.numbering, a as u32, 1.0),
                 (second.numbering, b as u32, -1.0),
@@ -121,7 +121,7 @@ impl Object {
     /// # Errors
     /// Rows of matrices that no longer exist.
     pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
-        let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
+        let number = |&(whose, dof, c): &(HostNumbering, u32, f64)| {
             Ok((self.number(whose, dof, "contact pair")?, c))
         };
         let row = |row: &HostRow| {

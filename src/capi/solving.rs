@@ -1,9 +1,9 @@
 //! The solve of the object behind `FetiFeti`, and its results.
 
-use super::nested::Given;
+use super::nested::HostVector;
 use super::object::Object;
 use crate::contact::{State, Step};
-use crate::embed::{Embedded, Outcome};
+use crate::embed::{Embedded, EmbeddedResult};
 use crate::Result;
 use base::Fault;
 use petsc::Vec as PetscVec;
@@ -39,7 +39,7 @@ impl Object {
     }
 
     /// Right-hand side, solution, and the held values if there are any.
-    fn vectors(&self, b: &PetscVec, x: &PetscVec, layout: &PetscVec) -> Result<Vec<Given>> {
+    fn vectors(&self, b: &PetscVec, x: &PetscVec, layout: &PetscVec) -> Result<Vec<HostVector>> {
         let named = [("the right-hand side", b), ("the solution", x)];
         let held = self
             .held_values
@@ -53,7 +53,7 @@ impl Object {
     ///
     /// # Errors
     /// There was no solve.
-    pub fn outcome(&self) -> Result<&Outcome> {
+    pub fn outcome(&self) -> Result<&EmbeddedResult> {
         let none = || {
             Fault::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before")
         };

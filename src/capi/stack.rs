@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
-use crate::embed::{Local, Piece};
+use crate::embed::{Local, TornPiece};
 use crate::Result;
 use base::linalg::csr::Csr;
 use base::Fault;
@@ -15,7 +15,7 @@ use parallel::exchange::gather_all;
 use petsc::{Mat, Session, Vec as PetscVec};
 
 /// A subdomain matrix from the host.
-pub struct Given {
+pub struct HostMatrix {
     /// The matrix in the host's order of rows and columns.
     pub k: Csr,
     /// Global number of each row; negative: the row has none.
@@ -28,7 +28,7 @@ pub struct Given {
     pub map: Option<Vec<i32>>,
 }
 
-impl Given {
+impl HostMatrix {
     /// The matrix as it is compared with what was set up, with these numbers of its rows.
     pub fn locals<'a>(&'a self, dofs: Cow<'a, [i32]>, block_size: usize) -> Vec<Local<'a>> {
         if self.copies.is_none() {
@@ -37,7 +37,7 @@ impl Given {
                 dofs,
             }];
         }
-        let local = |piece: Piece| Local {
+        let local = |piece: TornPiece| Local {
             dofs: piece.dofs.iter().map(|&d| d as i32).collect(),
             k: Cow::Owned(piece.k),
         };
@@ -48,14 +48,14 @@ impl Given {
     }
 
     /// The pieces of the matrix, with these numbers of its rows.
-    pub fn pieces(&self, dofs: &[i32], block_size: usize) -> Vec<Piece> {
+    pub fn pieces(&self, dofs: &[i32], block_size: usize) -> Vec<TornPiece> {
         let body = u64::try_from(self.body).ok();
         torn_from(&self.k, dofs, block_size, self.copies, body)
     }
 }
 
 /// The data of a matrix besides its entries.
-pub struct Told {
+pub struct StackStates {
     /// A vector with the layout of the matrix.
     pub layout: PetscVec,
     pub block_size: usize,
@@ -64,22 +64,22 @@ pub struct Told {
 }
 
 /// A matrix with its own numbering.
-struct Member {
+struct StackedMatrix {
     /// This rank's local matrix, in the numbering of the matrix.
-    given: Given,
-    told: Told,
+    given: HostMatrix,
+    told: StackStates,
     /// The first row of each rank.
     starts: Vec<u32>,
 }
 
 /// The matrices in the order in which they were given.
 #[derive(Default)]
-pub struct Stack(Vec<Member>);
+pub struct Stack(Vec<StackedMatrix>);
 
 /// The local matrix of a MATIS, and the other data of the matrix.
 pub struct LocalMatrix {
-    pub given: Given,
-    pub told: Told,
+    pub given: HostMatrix,
+    pub told: StackStates,
 }
 
 impl LocalMatrix {
@@ -104,14 +104,14 @@ impl LocalMatrix {
             ))?;
         }
         Ok(LocalMatrix {
-            given: Given {
+            given: HostMatrix {
                 k,
                 map: Some(dofs.clone()),
                 dofs,
                 copies: a.is_repeated()?.then_some(block_size),
                 body,
             },
-            told: Told {
+            told: StackStates {
                 layout,
                 block_size,
                 modes,
@@ -148,7 +148,7 @@ impl Stack {
     /// Appends a matrix. Collective.
     pub fn push(&mut self, session: &Session, local: LocalMatrix) {
         let first = local.told.layout.ownership_range().start as u32;
-        self.0.push(Member {
+        self.0.push(StackedMatrix {
             given: local.given,
             told: local.told,
             starts: gather_all(session.comm(), &[first]).concat(),
@@ -176,7 +176,7 @@ impl Stack {
         let own = &self.0[matrix];
         // Among ranks that start at the same row, only the last one has rows.
         let rank = own.starts.partition_point(|&s| s <= dof) - 1;
-        let end = |m: &Member| match m.starts.get(rank + 1) {
+        let end = |m: &StackedMatrix| match m.starts.get(rank + 1) {
             Some(&next) => next,
             None => m.told.layout.global_len() as u32,
         };
@@ -200,25 +200,25 @@ impl Stack {
     }
 
     /// The local matrix of each.
-    pub fn given(&mut self) -> impl Iterator<Item = &mut Given> {
+    pub fn given(&mut self) -> impl Iterator<Item = &mut HostMatrix> {
         self.0.iter_mut().map(|m| &mut m.given)
     }
 
     /// The local matrices with the numbers of all unknowns.
-    fn numbered(&self) -> Vec<(&Given, Vec<i32>)> {
+    fn numbered(&self) -> Vec<(&HostMatrix, Vec<i32>)> {
         let number = |k: usize, d: i32| match u32::try_from(d) {
             Ok(dof) => self.number(k, dof) as i32,
             Err(_) => d,
         };
         let mut out = Vec::new();
-        for (k, Member { given, .. }) in self.0.iter().enumerate() {
+        for (k, StackedMatrix { given, .. }) in self.0.iter().enumerate() {
             out.push((given, given.dofs.iter().map(|&d| number(k, d)).collect()));
         }
         out
     }
 
     /// The local matrices cut into pieces, in the numbering of all unknowns.
-    pub fn pieces(&self, block_size: usize) -> impl Iterator<Item = Piece> + '_ {
+    pub fn pieces(&self, block_size: usize) -> impl Iterator<Item = TornPiece> + '_ {
         let all = self.numbered().into_iter();
         all.flat_map(move |(given, dofs)| given.pieces(&dofs, block_size))
     }

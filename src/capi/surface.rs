@@ -5,12 +5,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::numbering::Numbering;
+use super::numbering::HostNumbering;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::vec3::{minus, norm};
 use base::Fault;
-use elements::mortar::{one_way, Face, Side};
+use elements::mortar::{one_way, MortarFace, MortarSide};
 use parallel::exchange::gather_all;
 use parallel::parcels::Parcels;
 use petsc::Session;
@@ -38,10 +38,10 @@ pub struct GivenSurface<'a> {
 pub type SizeOf<'a> = &'a dyn Fn(usize) -> Result<usize>;
 
 /// A surface, on all ranks.
-pub struct Surface {
-    pub numbering: Numbering,
+pub struct HostSurface {
+    pub numbering: HostNumbering,
     pub components: usize,
-    pub side: Side,
+    pub side: MortarSide,
     /// The unknowns of each node of `side`.
     pub dofs: Vec<Vec<i32>>,
     /// The node of `side` for each node that this rank gave; `None` for one in none of its faces.
@@ -53,7 +53,7 @@ pub struct Surface {
 impl GivenSurface<'_> {
     /// # Errors
     /// What makes no surface.
-    fn check(&self, rank: usize, number: usize, size: SizeOf<'_>) -> Result<Numbering> {
+    fn check(&self, rank: usize, number: usize, size: SizeOf<'_>) -> Result<HostNumbering> {
         let whose = || format!("surface {number}, as rank {rank} gives it,");
         let dim = self.dim as usize;
         if self.dim != 2 && self.dim != 3 {
@@ -69,8 +69,8 @@ impl GivenSurface<'_> {
             )));
         }
         let (numbering, known) = match usize::try_from(self.matrix) {
-            Err(_) => (Numbering::All, None),
-            Ok(k) => (Numbering::Matrix(k), Some(size(k)?)),
+            Err(_) => (HostNumbering::All, None),
+            Ok(k) => (HostNumbering::Matrix(k), Some(size(k)?)),
         };
         let beyond = |d: &&i32| **d >= 0 && known.is_some_and(|n| **d as usize >= n);
         if let (Some(dof), Some(n)) = (self.dofs.iter().find(beyond), known) {
@@ -89,7 +89,7 @@ impl GivenSurface<'_> {
         let n = self.coords.len() / dim;
         for (f, range) in self.start.windows(2).enumerate() {
             let list = &self.nodes[range[0] as usize..range[1] as usize];
-            let Some(kind) = Face::kind_of(dim, list.len()) else {
+            let Some(kind) = MortarFace::kind_of(dim, list.len()) else {
                 let expected = if dim == 2 {
                     "2 or 3"
                 } else {
@@ -148,16 +148,16 @@ impl GivenSurface<'_> {
 }
 
 /// A node as a rank gives it.
-struct Node {
+struct SurfaceNode {
     x: [f64; 3],
     dofs: Vec<i32>,
 }
 
 /// The key that tells nodes apart: their unknowns, or their places where they have none.
-type Key = (Vec<i32>, [u64; 3]);
+type NodeKey = (Vec<i32>, [u64; 3]);
 
-impl Node {
-    fn key(&self) -> Key {
+impl SurfaceNode {
+    fn key(&self) -> NodeKey {
         if self.dofs.iter().any(|&d| d >= 0) {
             (self.dofs.clone(), [0; 3])
         } else {
@@ -166,7 +166,7 @@ impl Node {
     }
 }
 
-impl Surface {
+impl HostSurface {
     /// Puts the parts of all ranks together; `number` is that of the surface, `size` has the number of unknowns of a
     /// matrix. Collective.
     ///
@@ -177,7 +177,7 @@ impl Surface {
         given: &GivenSurface<'_>,
         number: usize,
         size: SizeOf<'_>,
-    ) -> Result<Surface> {
+    ) -> Result<HostSurface> {
         let numbering = session.agree(given.check(session.rank(), number, size))?;
         let (dim, components) = (given.dim as usize, given.components as usize);
         let facts = [given.matrix.max(-1), given.dim, given.components];
@@ -192,10 +192,10 @@ impl Surface {
         let nodes = nodes.gather_all(session.comm());
         let faces = faces.gather_all(session.comm());
         let parts = nodes.iter().zip(&faces);
-        let parts: Vec<Part> = parts
-            .map(|(nodes, faces)| Part::new(nodes, faces))
+        let parts: Vec<RankSurface> = parts
+            .map(|(nodes, faces)| RankSurface::new(nodes, faces))
             .collect();
-        let mut first: BTreeMap<Key, (usize, &Node)> = BTreeMap::new();
+        let mut first: BTreeMap<NodeKey, (usize, &SurfaceNode)> = BTreeMap::new();
         for (rank, part) in parts.iter().enumerate() {
             for node in &part.nodes {
                 let (_, known) = *first.entry(node.key()).or_insert((rank, node));
@@ -211,30 +211,31 @@ impl Surface {
                 }
             }
         }
-        let mut nodes: Vec<(&Key, &(usize, &Node))> = first.iter().collect();
+        let mut nodes: Vec<(&NodeKey, &(usize, &SurfaceNode))> = first.iter().collect();
         nodes.sort_by(|(k, (_, a)), (l, (_, b))| {
             let places = a.x.iter().zip(&b.x).map(|(x, y)| x.total_cmp(y));
             places
                 .fold(std::cmp::Ordering::Equal, |o, p| o.then(p))
                 .then(k.cmp(l))
         });
-        let place: BTreeMap<&Key, u32> = nodes.iter().map(|n| n.0).zip(0..).collect();
-        let places_of =
-            |part: &Part| -> Vec<u32> { part.nodes.iter().map(|n| place[&n.key()]).collect() };
+        let place: BTreeMap<&NodeKey, u32> = nodes.iter().map(|n| n.0).zip(0..).collect();
+        let places_of = |part: &RankSurface| -> Vec<u32> {
+            part.nodes.iter().map(|n| place[&n.key()]).collect()
+        };
         // A face that several ranks give counts once.
-        let mut faces: BTreeMap<Vec<u32>, Face> = BTreeMap::new();
+        let mut faces: BTreeMap<Vec<u32>, MortarFace> = BTreeMap::new();
         for part in &parts {
             let here = places_of(part);
             for list in &part.faces {
                 let nodes: Vec<u32> = list.iter().map(|&k| here[k]).collect();
                 let mut sorted = nodes.clone();
                 sorted.sort_unstable();
-                let kind =
-                    Face::kind_of(dim, nodes.len()).expect("checked on the rank that gave it");
-                faces.entry(sorted).or_insert(Face { kind, nodes });
+                let kind = MortarFace::kind_of(dim, nodes.len())
+                    .expect("checked on the rank that gave it");
+                faces.entry(sorted).or_insert(MortarFace { kind, nodes });
             }
         }
-        let faces: Vec<Face> = faces.into_values().collect();
+        let faces: Vec<MortarFace> = faces.into_values().collect();
         if faces.is_empty() {
             return Err(Fault::Wrong.error(format!(
                 "surface {number} has no faces on any rank, expected some"
@@ -258,31 +259,31 @@ impl Surface {
         for (&k, node) in given.used().iter().zip(places_of(&parts[session.rank()])) {
             mine[k] = Some(node);
         }
-        Ok(Surface {
+        Ok(HostSurface {
             numbering,
             components,
             dofs: nodes.iter().map(|n| n.1 .1.dofs.clone()).collect(),
             mine,
             giver: nodes.iter().map(|n| n.1 .0).collect(),
-            side: Side::new(dim, points, faces),
+            side: MortarSide::new(dim, points, faces),
         })
     }
 }
 
 /// One rank's part, as all ranks see it.
-struct Part {
-    nodes: Vec<Node>,
+struct RankSurface {
+    nodes: Vec<SurfaceNode>,
     faces: Vec<Vec<usize>>,
 }
 
-impl Part {
-    fn new(nodes: &Parcels<[f64; 3], i32>, faces: &Parcels<(), u32>) -> Part {
-        let node = |(x, dofs): ([f64; 3], &[i32])| Node {
+impl RankSurface {
+    fn new(nodes: &Parcels<[f64; 3], i32>, faces: &Parcels<(), u32>) -> RankSurface {
+        let node = |(x, dofs): ([f64; 3], &[i32])| SurfaceNode {
             x,
             dofs: dofs.to_vec(),
         };
         let face = |((), list): ((), &[u32])| list.iter().map(|&k| k as usize).collect();
-        Part {
+        RankSurface {
             nodes: nodes.iter().map(node).collect(),
             faces: faces.iter().map(face).collect(),
         }

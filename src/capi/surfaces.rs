@@ -1,9 +1,9 @@
 //! The functions of `wrappers/fetifeti.h` for surfaces that mortar rows join; their manual pages are there.
 
-use super::handle::{alone, array, put, starts, together, Handle};
-use super::mortar::{GivenMortar, Surfaces};
+use super::handle::{alone, array, put, starts, together, HandlePointer};
+use super::mortar::{GivenMortar, HostSurfaces};
 use super::rows::row_kind;
-use super::surface::{GivenSurface, Surface};
+use super::surface::{GivenSurface, HostSurface};
 use crate::substructures::RowKind;
 use base::Fault;
 use std::ffi::c_int;
@@ -14,7 +14,7 @@ const INFINITY: f64 = f64::MAX / 4.0;
 #[allow(clippy::too_many_arguments)]
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddSurface(
-    ff: Handle,
+    ff: HandlePointer,
     matrix: c_int,
     dim: c_int,
     components: c_int,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn FetiFetiAddSurface(
         };
         let given = o.session.agree(arrays())?;
         let number = o.surfaces.len();
-        let made = Surface::new(&o.session, &given, number, &|k| {
+        let made = HostSurface::new(&o.session, &given, number, &|k| {
             o.size_of(k, "a surface names")
         })?;
         o.surfaces.push(made);
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn FetiFetiAddSurface(
 #[allow(clippy::too_many_arguments)]
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddMortar(
-    ff: Handle,
+    ff: HandlePointer,
     first: c_int,
     second: c_int,
     kind: c_int,
@@ -92,7 +92,7 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
                 array(without, n, "without")?
             },
         };
-        let all = Surfaces {
+        let all = HostSurfaces {
             session: &o.session,
             list: &o.surfaces,
         };
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiResetMortar(ff: Handle) -> c_int {
+pub unsafe extern "C" fn FetiFetiResetMortar(ff: HandlePointer) -> c_int {
     together(ff, c"FetiFetiResetMortar", |o| {
         o.surfaces.clear();
         o.mortars.clear();
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn FetiFetiResetMortar(ff: Handle) -> c_int {
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetMortar(
-    ff: Handle,
+    ff: HandlePointer,
     mortar: c_int,
     n: c_int,
     lambda: *mut f64,

@@ -1,7 +1,7 @@
 //! Other entries of the matrices that the host has added.
 
 use super::object::Object;
-use super::stack::Given;
+use super::stack::HostMatrix;
 use crate::embed::torn::unassembled;
 use crate::Result;
 use base::linalg::csr::Csr;
@@ -18,7 +18,7 @@ impl Object {
         let session = self.session.clone();
         let stacked = self.stack.given();
         let of_matrices = self.subdomains.iter_mut().filter(|s| s.map.is_some());
-        let all: Vec<&mut Given> = of_matrices.chain(stacked).collect();
+        let all: Vec<&mut HostMatrix> = of_matrices.chain(stacked).collect();
         if matrices.len() != all.len() {
             return Err(Fault::Sizes.error(format!(
                 "there are {} matrices, expected {}: as many as have been added",

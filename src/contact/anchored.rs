@@ -1,10 +1,10 @@
 //! A Newton step with anchors.
 
 use super::anchors::Anchors;
-use super::damping::Point;
 use super::judge;
-use super::newton::{Search, MORE, REDUCTION, STIFFER, STIFFNESS};
-use crate::feti::krylov::iterate::Run;
+use super::line_search::LineSearchPoint;
+use super::semismooth_newton::{SemismoothNewton, MORE, REDUCTION, STIFFER, STIFFNESS};
+use crate::feti::krylov::iterate::KrylovRun;
 use crate::status::Status;
 use crate::Result;
 use petsc::{ConvergedReason, Stopped};
@@ -14,8 +14,8 @@ const ROUNDING: f64 = 1e-11;
 
 /// The end of a Newton step, how far to go to it, and how exact it is, relative to the reference.
 pub(super) struct Arrival {
-    pub run: Run,
-    pub end: Point,
+    pub run: KrylovRun,
+    pub end: LineSearchPoint,
     pub length: Option<f64>,
     pub residual: f64,
     pub tolerance: f64,
@@ -42,7 +42,7 @@ impl Begin {
     }
 }
 
-impl Search<'_> {
+impl SemismoothNewton<'_> {
     /// Once a step has sent bodies away that bend: begins anew with anchors. Returns the set. Collective.
     pub(super) fn anchor(&mut self) -> Option<Vec<bool>> {
         let begin = self.begin.as_mut()?;
@@ -82,7 +82,7 @@ impl Search<'_> {
             residual.shift(&dual, &found.place);
             let gap = judge::all_gaps(&dual, residual)?;
             self.length = residual.length(&dual);
-            let end = Point {
+            let end = LineSearchPoint {
                 gap,
                 force: self.at.lambda.to_vec()?,
                 motion: [found.place, found.force],
@@ -95,7 +95,7 @@ impl Search<'_> {
                     length,
                     residual: relative(after),
                     tolerance: relative((goal[0] * before).max(goal[1])),
-                    run: Run {
+                    run: KrylovRun {
                         iterations,
                         status: Status::Krylov(if found.reached {
                             ConvergedReason::rtol()

@@ -18,11 +18,11 @@ use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::balance::Balance;
+use super::force_balance::ForceBalance;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::operators::dual::Dual;
-use crate::feti::projector::known::Known;
-use crate::feti::projector::rows::Rows;
+use crate::feti::projector::column_map::ColumnMap;
+use crate::feti::projector::rows::KernelRows;
 use crate::feti::LinearMethod;
 use crate::Result;
 use base::linalg::sorted::distinct;
@@ -39,7 +39,7 @@ pub struct Anchors {
     stiffness: Vec<f64>,
     /// α_k.
     centre: Vec<f64>,
-    known: Rc<Known>,
+    known: Rc<ColumnMap>,
 }
 
 /// The result of a solve with anchors, apart from λ.
@@ -57,28 +57,28 @@ pub struct Anchored {
 }
 
 /// (λ, y) or its residual.
-struct Pair {
+struct AnchoredMultipliers {
     rows: PetscVec,
     columns: Vec<f64>,
 }
 
-impl Pair {
-    fn new(rows: PetscVec, columns: Vec<f64>) -> Pair {
-        Pair { rows, columns }
+impl AnchoredMultipliers {
+    fn new(rows: PetscVec, columns: Vec<f64>) -> AnchoredMultipliers {
+        AnchoredMultipliers { rows, columns }
     }
 }
 
 /// The system on the rows that hold.
-struct System<'a> {
+struct AnchoredSystem<'a> {
     method: &'a LinearMethod,
     anchors: &'a Anchors,
     /// Q on the owned rows, zero where they do not hold.
     q: Vec<f64>,
     root: Vec<f64>,
     /// G, zero where rows do not hold.
-    g: Rows,
+    g: KernelRows,
     /// N = GᵀQG + H, from Q^½ G.
-    balance: Balance,
+    balance: ForceBalance,
 }
 
 impl Anchors {
@@ -117,7 +117,7 @@ impl Anchors {
     /// Anchors of all columns.
     #[cfg(test)]
     pub fn given(stiffness: Vec<f64>, centre: Vec<f64>) -> Anchors {
-        let known = Known::all(centre.len()).into();
+        let known = ColumnMap::all(centre.len()).into();
         Anchors {
             stiffness,
             centre,
@@ -170,10 +170,10 @@ impl Anchors {
         g.scale_rows(&on.collect::<Vec<f64>>());
         let mut scaled = g.clone();
         scaled.scale_rows(&root);
-        let system = System {
+        let system = AnchoredSystem {
             method,
             anchors: self,
-            balance: Balance::raised(comm, scaled, natural, Some(&self.stiffness)),
+            balance: ForceBalance::raised(comm, scaled, natural, Some(&self.stiffness)),
             g,
             q,
             root,
@@ -183,7 +183,7 @@ impl Anchors {
     }
 }
 
-impl System<'_> {
+impl AnchoredSystem<'_> {
     /// Gᵀ λ. Collective.
     fn forces(&self, lambda: &PetscVec) -> Result<Vec<f64>> {
         let known = &self.anchors.known;
@@ -194,7 +194,7 @@ impl System<'_> {
     }
 
     /// β = N⁻¹(GᵀQ ρ + H ρ_y), and ρ without (G, I) β. Collective.
-    fn project_transpose(&self, w: &mut Pair) -> Result<Vec<f64>> {
+    fn project_transpose(&self, w: &mut AnchoredMultipliers) -> Result<Vec<f64>> {
         let scaled: Vec<f64> = (w.rows.array()?.iter())
             .zip(&self.root)
             .map(|(x, s)| x * s)
@@ -211,7 +211,7 @@ impl System<'_> {
     }
 
     /// (λ, y) without (QG, H) N⁻¹ (Gᵀλ + y). Collective.
-    fn project(&self, z: &mut Pair) -> Result<()> {
+    fn project(&self, z: &mut AnchoredMultipliers) -> Result<()> {
         let mut gamma = self.forces(&z.rows)?;
         gamma.iter_mut().zip(&z.columns).for_each(|(c, y)| *c += y);
         self.balance.solve(&mut gamma);
@@ -230,20 +230,20 @@ impl System<'_> {
     }
 
     /// P (M⁻¹, H) ρ. Collective.
-    fn precondition(&self, w: &Pair) -> Result<Pair> {
+    fn precondition(&self, w: &AnchoredMultipliers) -> Result<AnchoredMultipliers> {
         let dual = self.method.dual();
         let rows = dual.multipliers()?;
         dual.m(&w.rows, &rows)?;
         let columns = w.columns.iter().zip(&self.anchors.stiffness);
         let columns = columns.map(|(y, h)| h * y).collect();
         drop(dual);
-        let mut z = Pair::new(rows, columns);
+        let mut z = AnchoredMultipliers::new(rows, columns);
         self.project(&mut z)?;
         Ok(z)
     }
 
     /// xᵀ y. Collective.
-    fn dot(&self, x: &Pair, y: &Pair) -> Result<f64> {
+    fn dot(&self, x: &AnchoredMultipliers, y: &AnchoredMultipliers) -> Result<f64> {
         let comm = self.method.session.comm();
         let rows: f64 = (x.rows.array()?.iter())
             .zip(y.rows.array()?.iter())
@@ -255,7 +255,7 @@ impl System<'_> {
     }
 
     /// y = e − Gᵀλ, and the residual of (λ, y) without (G, I) β, and β = −α. Collective.
-    fn residual(&self, at: &mut Iterate) -> Result<(Vec<f64>, Pair, Vec<f64>)> {
+    fn residual(&self, at: &mut Iterate) -> Result<(Vec<f64>, AnchoredMultipliers, Vec<f64>)> {
         at.evaluate(&self.method.dual())?;
         let mut y = self.forces(&at.lambda)?;
         y.iter_mut()
@@ -267,7 +267,7 @@ impl System<'_> {
         let columns = (y.iter().zip(stiffness).zip(centre))
             .map(|((y, h), a)| -a - y / h)
             .collect();
-        let mut w = Pair::new(at.residual.r.duplicate()?, columns);
+        let mut w = AnchoredMultipliers::new(at.residual.r.duplicate()?, columns);
         w.rows.copy_from(&at.residual.r)?;
         let beta = self.project_transpose(&mut w)?;
         Ok((y, w, beta))
@@ -280,13 +280,13 @@ impl System<'_> {
         let first = rz.max(0.0).sqrt();
         let goal = (reduction * first).max(least);
         let limit = self.method.ksp.tolerances()?.3 as usize;
-        let mut p = Pair::new(z.rows.duplicate()?, z.columns.clone());
+        let mut p = AnchoredMultipliers::new(z.rows.duplicate()?, z.columns.clone());
         p.rows.copy_from(&z.rows)?;
         let mut iterations = 0;
         while rz > goal * goal && iterations < limit {
             self.method.system.heed()?;
             let dual = self.method.dual();
-            let mut image = Pair::new(dual.multipliers()?, Vec::new());
+            let mut image = AnchoredMultipliers::new(dual.multipliers()?, Vec::new());
             dual.f(&p.rows, &image.rows)?;
             drop(dual);
             let columns = p.columns.iter().zip(&self.anchors.stiffness);

@@ -13,9 +13,9 @@
 
 use std::rc::Rc;
 
-use super::balance::Balance;
-use super::mprgp::Bounded;
-use crate::feti::projector::rows::Rows;
+use super::force_balance::ForceBalance;
+use super::mprgp::BoundedQuadratic;
+use crate::feti::projector::rows::KernelRows;
 use crate::feti::LinearMethod;
 use crate::Result;
 use parallel::exchange::total;
@@ -35,13 +35,13 @@ pub struct Augmented<'a> {
     method: &'a LinearMethod,
     /// S on the owned rows.
     pub scale: Vec<f64>,
-    g: Rows,
+    g: KernelRows,
     /// The balance of forces, all rows.
-    pub balance: Rc<Balance>,
+    pub balance: Rc<ForceBalance>,
     /// ϱ, which is also ‖A‖.
     pub rho: f64,
     precondition: bool,
-    face: Option<Balance>,
+    face: Option<ForceBalance>,
     lambda: PetscVec,
     image: PetscVec,
 }
@@ -70,7 +70,7 @@ impl<'a> Augmented<'a> {
             .collect();
         let mut g = natural.all.clone();
         g.scale_rows(&scale);
-        let balance = Rc::new(Balance::new(comm, g.clone(), natural));
+        let balance = Rc::new(ForceBalance::new(comm, g.clone(), natural));
         let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
         drop(dual);
         let mut a = Augmented {
@@ -143,7 +143,7 @@ impl<'a> Augmented<'a> {
     }
 }
 
-impl Bounded for Augmented<'_> {
+impl BoundedQuadratic for Augmented<'_> {
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         let comm = self.method.session.comm();
         let balance = self.balance.clone();
@@ -165,7 +165,7 @@ impl Bounded for Augmented<'_> {
         let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
         g.scale_rows(&mask);
         let dual = self.method.dual();
-        self.face = Some(Balance::new(session.comm(), g, &dual.natural));
+        self.face = Some(ForceBalance::new(session.comm(), g, &dual.natural));
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use mpi::topology::SimpleCommunicator;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use parallel::exchange::{max_all, total};
@@ -21,7 +21,7 @@ pub const ROUNDING: f64 = 1e-14;
 /// Sizes beside which forces and displacements of a problem count as small. The largest ones of a solution are not
 /// used: they may be rounding themselves, where bodies touch without force or contact holds all that could move.
 #[derive(Debug, Clone, Copy)]
-pub struct Sizes {
+pub struct JudgeSizes {
     /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are what sums of
     /// loads leave.
     pub load: f64,
@@ -30,11 +30,11 @@ pub struct Sizes {
     pub give: f64,
 }
 
-impl Sizes {
+impl JudgeSizes {
     /// The sizes of `problem`. Collective.
-    pub fn of(dual: &Dual, problem: &Problem) -> Sizes {
+    pub fn of(dual: &Dual, problem: &Problem) -> JudgeSizes {
         let locals = problem.local.iter().zip(&dual.stiffness.locals);
-        let give = |(sub, local): (&Subdomain, &Scaled)| match local.stiffest() {
+        let give = |(sub, local): (&Subdomain, &ScaledSubdomain)| match local.stiffest() {
             stiff if stiff > 0.0 => sub.load() / stiff,
             _ => 0.0,
         };
@@ -42,7 +42,7 @@ impl Sizes {
         let mut largest = [problem.largest_load(), give];
         max_all(dual.comm(), &mut largest);
         let [load, give] = largest;
-        Sizes { load, give }
+        JudgeSizes { load, give }
     }
 }
 
@@ -82,7 +82,7 @@ impl JudgedRows {
         jump: &Jump,
         gaps: &[f64],
         lambda: &[f64],
-        (y, sizes): (f64, Sizes),
+        (y, sizes): (f64, JudgeSizes),
         open: f64,
     ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
@@ -96,7 +96,7 @@ impl JudgedRows {
         }
         max_all(comm, &mut largest);
         let [jump_left, lambda_max, y_max, contradictory] = largest;
-        let Sizes { load, give } = sizes;
+        let JudgeSizes { load, give } = sizes;
         let lambda_max = lambda_max.max(ROUNDING * load);
         let y_max = y_max.max(ROUNDING * give);
         let mut rows = JudgedRows {

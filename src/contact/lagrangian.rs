@@ -16,11 +16,11 @@
 
 use std::time::Instant;
 
-use super::active_set::{ActiveSet, Verdict};
+use super::active_set::{ActiveSet, ActiveSetChange};
 use super::judge;
-use super::newton::{Came, Search};
+use super::semismooth_newton::{NewtonOutcome, SemismoothNewton};
 use super::settings::ContactSettings;
-use super::state::{Observer, Progress, State, Step};
+use super::state::{ActiveSetProgress, Observer, State, Step};
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
@@ -33,7 +33,8 @@ const EARLY: usize = 8;
 /// without force come and go by rounding.
 const OPEN: f64 = 0.1;
 
-/// Steps without progress after which a trial ends. It also ends if more than a few rows are wrong ([`Search::few`]).
+/// Steps without progress after which a trial ends. It also ends if more than a few rows are wrong
+/// ([`SemismoothNewton::few`]).
 const PATIENCE: usize = 1;
 
 /// A minimisation that ends early with more wrong rows than this is not followed by a trial. A trial with no more has
@@ -65,7 +66,7 @@ pub(super) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     state.safeguarded = true;
-    let mut course = Course {
+    let mut course = LagrangianLoop {
         method,
         settings,
         rtol: state.accuracy * method.ksp.tolerances()?.0,
@@ -76,8 +77,8 @@ pub(super) fn solve(
         steps,
         observe,
     };
-    let mut search = Search::new(method, &mut state)?;
-    let (mut progress, mut patience) = (Progress::default(), FLICKER);
+    let mut search = SemismoothNewton::new(method, &mut state)?;
+    let (mut progress, mut patience) = (ActiveSetProgress::default(), FLICKER);
     for round in 0.. {
         let mut inner = 0;
         let (came, status, may_try) = loop {
@@ -95,13 +96,13 @@ pub(super) fn solve(
             if !status.converged() && !status.broke_down() {
                 return course.finish(search, status);
             }
-            if matches!(came, Came::Down | Came::Nowhere) {
+            if matches!(came, NewtonOutcome::Down | NewtonOutcome::Nowhere) {
                 break (came, status, true);
             }
-            let early = round < EARLY && inner > 1 && came == Came::Near;
+            let early = round < EARLY && inner > 1 && came == NewtonOutcome::Near;
             let flickers = wrong <= search.few && progress.stalled(patience);
             if flickers {
-                (progress, patience) = (Progress::default(), 2 * patience);
+                (progress, patience) = (ActiveSetProgress::default(), 2 * patience);
                 if let Some((run, status)) = course.attempt(&search, &mut state, false)? {
                     return course.end(run, status);
                 }
@@ -111,9 +112,9 @@ pub(super) fn solve(
                 break (came, status, wrong <= CLOSE && !flickers);
             }
         };
-        let minimal = came == Came::Down;
+        let minimal = came == NewtonOutcome::Down;
         // Where φ falls no more, rounding may have ended the last minimisation.
-        let ended = minimal || (came == Came::Nowhere && progress.wrong() == 0);
+        let ended = minimal || (came == NewtonOutcome::Nowhere && progress.wrong() == 0);
         if ended && search.is_solution(course.rtol)? {
             let status = if status.converged() {
                 status
@@ -137,7 +138,7 @@ pub(super) fn solve(
 }
 
 /// The steps so far, and what they go by.
-struct Course<'a, 'o> {
+struct LagrangianLoop<'a, 'o> {
     method: &'a LinearMethod,
     settings: &'a ContactSettings,
     rtol: f64,
@@ -152,7 +153,7 @@ struct Course<'a, 'o> {
     observe: &'a mut Observer<'o>,
 }
 
-impl<'a> Course<'a, '_> {
+impl<'a> LagrangianLoop<'a, '_> {
     fn note(&mut self, step: Step, state: &State) -> Result<()> {
         (self.observe)(&step, state)?;
         self.steps.push(step);
@@ -166,7 +167,11 @@ impl<'a> Course<'a, '_> {
         self.seconds + self.clock.elapsed().as_secs_f64()
     }
 
-    fn finish(self, search: Search, status: Status) -> Result<(LinearSolution, Vec<Step>)> {
+    fn finish(
+        self,
+        search: SemismoothNewton,
+        status: Status,
+    ) -> Result<(LinearSolution, Vec<Step>)> {
         let seconds = self.elapsed();
         let found = search.finish(&self.steps, seconds, status)?;
         self.answer(found)
@@ -190,14 +195,14 @@ impl<'a> Course<'a, '_> {
     /// the run if it has come to an end. It leaves the rows rigid. Collective.
     fn attempt(
         &mut self,
-        search: &Search,
+        search: &SemismoothNewton,
         state: &mut State,
         minimal: bool,
     ) -> Result<Option<(ActiveSet<'a>, Status)>> {
         search.rigid();
         let trial = State {
             safeguarded: false,
-            progress: Progress::default(),
+            progress: ActiveSetProgress::default(),
             accuracy: if minimal {
                 self.digits * state.accuracy
             } else {
@@ -232,7 +237,7 @@ impl<'a> Course<'a, '_> {
             if status.broke_down() {
                 break;
             }
-            if verdict == Verdict::Solved || !status.converged() {
+            if verdict == ActiveSetChange::Solved || !status.converged() {
                 return Ok(Some((run, status)));
             }
             let patience = if run.state.progress.wrong() > CLOSE {

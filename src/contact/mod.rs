@@ -13,29 +13,29 @@ mod active_set;
 mod anchored;
 mod anchors;
 mod augmented;
-mod balance;
-mod damping;
-mod dependent;
+mod certified_signs;
+mod coercivity;
+mod compliant_rows;
+mod farkas;
 mod feasible;
-mod finished;
-mod give;
+mod force_balance;
 mod judge;
 mod lagrangian;
-mod motion;
+mod least_distance;
+mod line_search;
+mod mean_compliance;
 mod mprgp;
-mod newton;
-mod pulling;
-mod rejudge;
-mod restore;
-mod rigid;
+mod newton_termination;
+mod pull_monitor;
+mod ratio_test;
+mod semismooth_newton;
 mod settings;
-mod settle;
 mod smalbe;
-mod springs;
 mod state;
+mod unilateral_springs;
 
 pub use settings::{ContactSettings, ContactType};
-pub use state::{Observer, Progress, State, Step};
+pub use state::{ActiveSetProgress, Observer, State, Step};
 
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
@@ -69,16 +69,16 @@ fn judged(
     let begin = start.cloned();
     let (mut found, mut steps) = outer(method, settings, settings.kind, begin, observe)?;
     let mut accuracy = 1.0;
-    for _ in 0..rejudge::ROUNDS {
+    for _ in 0..certified_signs::ROUNDS {
         let certified = method.certify(method.refine(found)?)?;
         // A certificate that rows on the wrong side have spoilt is for the loop to mend.
         if !certified.status.converged() && certified.status != Status::Certificate {
             return Ok((certified, steps));
         }
-        let Some(mut state) = rejudge::again(method, &certified)? else {
+        let Some(mut state) = certified_signs::wrong_signs(method, &certified)? else {
             return Ok((certified, steps));
         };
-        accuracy *= rejudge::FURTHER;
+        accuracy *= certified_signs::FURTHER;
         state.accuracy = accuracy;
         state.steps = before + steps.len();
         let kind = ContactType::ActiveSet;
@@ -92,7 +92,7 @@ fn judged(
         };
     }
     let mut last = method.certify(method.refine(found)?)?;
-    if last.status.converged() && rejudge::again(method, &last)?.is_some() {
+    if last.status.converged() && certified_signs::wrong_signs(method, &last)?.is_some() {
         last.status = Status::Certificate;
     }
     Ok((last, steps))
@@ -141,5 +141,5 @@ fn outer(
 fn ask(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
     let dual = method.dual();
     let load = Loads::new(&method.problem, &dual).kernel;
-    motion::check_many(&method.problem, &dual, &load, lambda)
+    farkas::check_many(&method.problem, &dual, &load, lambda)
 }

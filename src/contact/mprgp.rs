@@ -17,7 +17,7 @@ const GAMMA: f64 = 1.0;
 const FLAT: f64 = 1e-13;
 
 /// The quadratic function and its bounds; vectors are this rank's part.
-pub trait Bounded {
+pub trait BoundedQuadratic {
     /// y ← A x.
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()>;
     /// Enters a face: `free` marks the entries that may move.
@@ -39,7 +39,7 @@ pub struct Setting<'a> {
 }
 
 /// The result of a run.
-pub struct Run {
+pub struct MprgpResult {
     /// The minimiser so far.
     pub x: Vec<f64>,
     /// A x − b.
@@ -83,19 +83,19 @@ impl Setting<'_> {
     /// Minimises from `x` until `stop(x, ‖gᴾ‖)` is true or `max` products are spent. Collective.
     pub fn minimise(
         &self,
-        a: &mut dyn Bounded,
+        a: &mut dyn BoundedQuadratic,
         b: &[f64],
         x: Vec<f64>,
         stop: &mut dyn FnMut(&[f64], f64) -> bool,
         max: usize,
-    ) -> Result<Run> {
+    ) -> Result<MprgpResult> {
         let n = x.len();
-        let mut run = Run {
+        let mut run = MprgpResult {
             x,
             g: vec![0.0; n],
             products: 1,
         };
-        let residual = |a: &mut dyn Bounded, x: &[f64], g: &mut Vec<f64>| -> Result<()> {
+        let residual = |a: &mut dyn BoundedQuadratic, x: &[f64], g: &mut Vec<f64>| -> Result<()> {
             a.apply(x, g)?;
             g.iter_mut().zip(b).for_each(|(g, b)| *g -= b);
             Ok(())
@@ -173,7 +173,7 @@ impl Setting<'_> {
     /// The first direction in a face.
     fn restart(
         &self,
-        a: &mut dyn Bounded,
+        a: &mut dyn BoundedQuadratic,
         x: &[f64],
         phi: &[f64],
         z: &mut [f64],

@@ -15,13 +15,13 @@ use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::active_set::{ActiveSet, Verdict};
+use super::active_set::{ActiveSet, ActiveSetChange};
 use super::augmented::Augmented;
 use super::judge;
 use super::lagrangian;
-use super::mprgp::{Bounded, Setting};
+use super::mprgp::{BoundedQuadratic, Setting};
 use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, Observer, Progress, State, Step};
+use super::state::{changes, ActiveSetProgress, Observer, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
@@ -66,7 +66,7 @@ pub(super) fn solve(
         let seconds = clock.elapsed().as_secs_f64();
         Ok((run.finish(&steps, seconds, status)?, steps))
     };
-    let mut search = Search::new(method, settings, &state)?;
+    let mut search = SmalbeIteration::new(method, settings, &state)?;
     // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
@@ -101,7 +101,7 @@ pub(super) fn solve(
         }
         let trial = State {
             safeguarded: false,
-            progress: Progress::default(),
+            progress: ActiveSetProgress::default(),
             ..state.clone()
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;
@@ -113,7 +113,7 @@ pub(super) fn solve(
             state.steps += 1;
             observe(&step, &run.state)?;
             steps.push(step);
-            if verdict == Verdict::Solved || !status.converged() {
+            if verdict == ActiveSetChange::Solved || !status.converged() {
                 return finish(run, steps, status);
             }
         }
@@ -129,7 +129,7 @@ pub(super) fn solve(
 }
 
 /// The dual problem in shifted and scaled variables, and the state of the search.
-struct Search<'a> {
+struct SmalbeIteration<'a> {
     a: Augmented<'a>,
     /// Pᵀ S (d − F λ̃).
     b: Vec<f64>,
@@ -147,12 +147,12 @@ struct Search<'a> {
     lagrangian: f64,
 }
 
-impl<'a> Search<'a> {
+impl<'a> SmalbeIteration<'a> {
     fn new(
         method: &'a LinearMethod,
         settings: &ContactSettings,
         state: &State,
-    ) -> Result<Search<'a>> {
+    ) -> Result<SmalbeIteration<'a>> {
         let (session, problem) = (&method.session, &method.problem);
         let comm = session.comm();
         let all: Vec<bool> = {
@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         } else {
             known.part_of(&state.mu)
         };
-        Ok(Search {
+        Ok(SmalbeIteration {
             x: x.collect(),
             mu,
             fixed: all.iter().map(|on| !on).collect(),

@@ -53,7 +53,7 @@ pub struct State {
     /// Steps so far.
     pub steps: usize,
     /// The progress of the active-set method.
-    pub progress: Progress,
+    pub progress: ActiveSetProgress,
     /// Whether the active-set method has given up, and the augmented Lagrangian goes on.
     pub safeguarded: bool,
     /// Factor on the tolerance of the user. Below 1 if multipliers turned out to need more digits.
@@ -71,7 +71,7 @@ impl State {
             before: active.to_vec(),
             reference: 0.0,
             steps: 0,
-            progress: Progress::default(),
+            progress: ActiveSetProgress::default(),
             safeguarded: false,
             accuracy: 1.0,
             mu: Vec::new(),
@@ -112,7 +112,7 @@ pub(super) fn changes(comm: &SimpleCommunicator, before: &[bool], now: &[bool]) 
 /// The progress of the active-set method, measured by the number of rows on the wrong side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct Progress {
+pub struct ActiveSetProgress {
     /// The smallest number of wrong rows so far; `None` before the first step.
     fewest: Option<usize>,
     /// Steps since then.
@@ -121,7 +121,7 @@ pub struct Progress {
     wrong: usize,
 }
 
-impl Progress {
+impl ActiveSetProgress {
     /// Notes the number of wrong rows after a step.
     pub(super) fn note(&mut self, wrong: usize) {
         self.wrong = wrong;
@@ -133,7 +133,7 @@ impl Progress {
 
     /// Begins anew with the number after the last step.
     pub(super) fn begin(&mut self, wrong: usize) {
-        *self = Progress::default();
+        *self = ActiveSetProgress::default();
         self.note(wrong);
     }
 

@@ -1,8 +1,8 @@
 //! Bodies: groups of subdomains that are connected by primal constraints. The user names the groups, or a partition of
 //! the subdomain graph finds them ([`partition`](super::partition)).
 
-use super::hold::Bond;
-use super::parts::Part;
+use super::parts::TornSubdomain;
+use super::rigid_constraints::Bond;
 use super::sharing::Sharers;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
@@ -35,7 +35,7 @@ pub fn by_most_dofs(
     numbers: &PetscVec,
     halo: &Halo,
     ghosts: &[u32],
-    parts: &mut [Part],
+    parts: &mut [TornSubdomain],
 ) -> Result<()> {
     let mut values = vec![0.0; ghosts.len()];
     halo.fetch(numbers, &mut values)?;
@@ -62,11 +62,15 @@ pub fn by_most_dofs(
 ///
 /// # Errors
 /// The host named bodies for some subdomains but not for all; the same error on all ranks.
-pub fn named_groups(session: &Session, first: usize, parts: &[Part]) -> Result<Option<Vec<u64>>> {
+pub fn named_groups(
+    session: &Session,
+    first: usize,
+    parts: &[TornSubdomain],
+) -> Result<Option<Vec<u64>>> {
     if !any(session.comm(), parts.iter().any(|p| p.body.is_some())) {
         return Ok(None);
     }
-    let given = |(j, part): (usize, &Part)| {
+    let given = |(j, part): (usize, &TornSubdomain)| {
         part.body.ok_or_else(|| {
             Error::input(format!(
                 "subdomain {} was given no body but others were, \

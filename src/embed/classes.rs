@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::parts::Part;
+use super::parts::TornSubdomain;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::substructures::EntityKind;
@@ -16,7 +16,7 @@ use petsc::Session;
 
 /// A connected piece of interface, as one of its subdomains sees it.
 #[derive(Debug, Clone)]
-pub struct Class {
+pub struct InterfaceClass {
     /// The lowest global dof of the class, which identifies it.
     pub root: u32,
     /// The subdomains that share it, of all bodies, increasing.
@@ -25,7 +25,7 @@ pub struct Class {
     pub dofs: Vec<u32>,
 }
 
-impl Class {
+impl InterfaceClass {
     /// Whether the class is a single dof shared by three or more subdomains.
     pub fn is_vertex(&self) -> bool {
         self.dofs.len() == 1 && self.sharers.len() > 2
@@ -45,9 +45,9 @@ impl Class {
 pub fn classes(
     session: &Session,
     torn: &Torn,
-    parts: &[Part],
+    parts: &[TornSubdomain],
     sharers: &Sharers,
-) -> Vec<Vec<Class>> {
+) -> Vec<Vec<InterfaceClass>> {
     let comm = session.comm();
     let size = comm.size() as usize;
     // Local candidates: lists of (rank that merges the sides, dofs of a locally connected piece).
@@ -74,7 +74,7 @@ pub fn classes(
     }
     let replies = received
         .iter()
-        .map(|list| list.iter().map(|w| find(&mut above, w[0])).collect())
+        .map(|list| list.iter().map(|w| find_root(&mut above, w[0])).collect())
         .collect();
     let answers: Vec<Vec<u32>> = exchange_by_rank(comm, replies);
 
@@ -92,7 +92,7 @@ pub fn classes(
         let class = |(root, mut dofs): (u32, Vec<u32>)| {
             dofs.sort_unstable();
             let sharers = sharers.of(part.dofs[dofs[0] as usize]).to_vec();
-            Class {
+            InterfaceClass {
                 root,
                 sharers,
                 dofs,
@@ -105,13 +105,13 @@ pub fn classes(
 
 /// Whether the problem is three-dimensional, judged from the interfaces: somewhere three or more subdomains share a
 /// line of dofs. Collective.
-pub fn in_space(session: &Session, classes: &[Vec<Class>]) -> bool {
-    let line = |c: &Class| c.sharers.len() > 2 && c.dofs.len() > 1;
+pub fn in_space(session: &Session, classes: &[Vec<InterfaceClass>]) -> bool {
+    let line = |c: &InterfaceClass| c.sharers.len() > 2 && c.dofs.len() > 1;
     any(session.comm(), classes.iter().flatten().any(line))
 }
 
 /// The locally connected pieces of a subdomain's interface: lists of local dofs, increasing.
-fn connected(torn: &Torn, part: &Part, sharers: &Sharers) -> Vec<Vec<u32>> {
+fn connected(torn: &Torn, part: &TornSubdomain, sharers: &Sharers) -> Vec<Vec<u32>> {
     let n = part.dofs.len();
     let mut seen = vec![false; n];
     let mut out = Vec::new();
@@ -146,7 +146,7 @@ fn connected(torn: &Torn, part: &Part, sharers: &Sharers) -> Vec<Vec<u32>> {
 }
 
 /// The local dofs of the node of local dof `i`.
-fn of_node(torn: &Torn, part: &Part, i: usize) -> std::ops::Range<usize> {
+fn of_node(torn: &Torn, part: &TornSubdomain, i: usize) -> std::ops::Range<usize> {
     let node = torn.node(part.dofs[i]);
     let (mut low, mut high) = (i, i + 1);
     while low > 0 && torn.node(part.dofs[low - 1]) == node {
@@ -158,7 +158,7 @@ fn of_node(torn: &Torn, part: &Part, i: usize) -> std::ops::Range<usize> {
     low..high
 }
 
-fn find(above: &mut HashMap<u32, u32>, dof: u32) -> u32 {
+fn find_root(above: &mut HashMap<u32, u32>, dof: u32) -> u32 {
     let mut root = dof;
     while let Some(&up) = above.get(&root).filter(|&&up| up != root) {
         root = up;
@@ -170,6 +170,6 @@ fn find(above: &mut HashMap<u32, u32>, dof: u32) -> u32 {
 
 /// The lower of two roots becomes the root of both.
 fn join(above: &mut HashMap<u32, u32>, a: u32, b: u32) {
-    let (a, b) = (find(above, a), find(above, b));
+    let (a, b) = (find_root(above, a), find_root(above, b));
     above.insert(a.max(b), a.min(b));
 }

@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use super::known_dofs::KnownDofs;
-use super::placed::Placed;
+use super::placed::LocatedRow;
 use super::torn::GivenRow;
-use super::touched::{Here, Touched};
+use super::touched::{RankProblem, Touched};
 use crate::substructures::{Row, RowKind};
 use crate::{Error, Result};
 use bytemuck::{Pod, Zeroable};
@@ -17,7 +17,7 @@ use parallel::parcels::Parcels;
 use petsc::Session;
 
 /// A row on the rank that takes it.
-struct Taken {
+struct AcceptedRow {
     /// The rank that gave it, and its number among the rows given there.
     from: (usize, usize),
     /// The row as the method gets it.
@@ -36,8 +36,8 @@ struct RowValue {
 
 /// The host's rows, distributed over the ranks.
 #[derive(Default)]
-pub struct Contact {
-    taken: Vec<Taken>,
+pub struct HostContact {
+    taken: Vec<AcceptedRow>,
     /// The block of every unknown of this rank's subdomains that appears in a row, by global dof. A block is named by
     /// its lowest dof.
     block: HashMap<u32, u32>,
@@ -51,20 +51,24 @@ pub struct Contact {
     pub inequalities: bool,
 }
 
-impl Contact {
+impl HostContact {
     /// Distributes the rows `given` by this rank. Collective.
     ///
     /// # Errors
     /// A row with a dof that no subdomain has, the same error on all ranks; PETSc's own.
-    pub fn new(session: &Session, given: &[GivenRow], here: &Here<'_>) -> Result<Contact> {
+    pub fn new(
+        session: &Session,
+        given: &[GivenRow],
+        here: &RankProblem<'_>,
+    ) -> Result<HostContact> {
         let comm = session.comm();
         let n_global = total(comm, given.len() as f64) as usize;
         if n_global == 0 {
-            return Ok(Contact::default());
+            return Ok(HostContact::default());
         }
         let touched = Touched::new(session, given, here)?;
         let place = |(r, row): (usize, &GivenRow)| {
-            Placed::new(r, row, &touched).map_err(|dof| {
+            LocatedRow::new(r, row, &touched).map_err(|dof| {
                 Error::input(format!(
                     "contact row {r} of rank {} has a coefficient at unknown {dof}, \
                      which no subdomain has, expected unknowns of subdomains",
@@ -73,21 +77,21 @@ impl Contact {
             })
         };
         let placed = given.iter().enumerate().map(place);
-        let placed: Vec<Option<Placed>> = session.agree(placed.collect())?;
-        let home = |row: &Placed| row.block as usize % session.size();
+        let placed: Vec<Option<LocatedRow>> = session.agree(placed.collect())?;
+        let home = |row: &LocatedRow| row.block as usize % session.size();
         let homes = placed.iter().map(|p| p.as_ref().map(home)).collect();
         let mut outgoing = Parcels::for_each_rank(comm);
         for row in placed.iter().flatten() {
             row.give(&mut outgoing[home(row)]);
         }
-        let mut rows: Vec<(usize, Placed)> = Vec::new();
+        let mut rows: Vec<(usize, LocatedRow)> = Vec::new();
         for (rank, sent) in exchange_by_rank(comm, outgoing).iter().enumerate() {
-            rows.extend(sent.iter().map(|row| (rank, Placed::received(row))));
+            rows.extend(sent.iter().map(|row| (rank, LocatedRow::received(row))));
         }
         let terms = || rows.iter().flat_map(|(_, row)| row.known());
         let known = any(comm, terms().next().is_some());
         let known = known.then(|| KnownDofs::new(session, terms().map(|t| (t.0, t.1))));
-        let taken = |(rank, row): &(usize, Placed)| Taken {
+        let taken = |(rank, row): &(usize, LocatedRow)| AcceptedRow {
             from: (*rank, row.number),
             row: row.row(here.layout.global_len()),
             known: known.as_ref().map_or(Vec::new(), |known| {
@@ -96,7 +100,7 @@ impl Contact {
                     .collect()
             }),
         };
-        Ok(Contact {
+        Ok(HostContact {
             taken: rows.iter().map(taken).collect(),
             block: touched.here,
             homes,
@@ -123,7 +127,7 @@ impl Contact {
             None => Vec::new(),
             Some(known) => known.fetch(session, values),
         };
-        let gap = |t: &Taken| {
+        let gap = |t: &AcceptedRow| {
             let moved: f64 = t.known.iter().map(|&(k, c)| c * values[k]).sum();
             t.row.gap - moved
         };

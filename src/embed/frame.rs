@@ -9,16 +9,16 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 
 use super::bodies::Bodies;
-use super::kernels::Columns;
+use super::kernels::KernelVectors;
 use super::motions::CANCELS;
 use super::nullspace::cancels;
-use super::parts::{Part, Place, Rows, SYMMETRIC};
+use super::parts::{PieceRows, RowDestination, TornSubdomain, SYMMETRIC};
 use super::sharing::Sharers;
 use base::linalg::csr::Csr;
 use petsc::Vec as PetscVec;
 
 /// The frame of a torn operator on this rank.
-pub struct Frame {
+pub struct TornFrame {
     pub n_global: usize,
     pub block_size: usize,
     /// A vector of the host's layout.
@@ -28,13 +28,13 @@ pub struct Frame {
     /// The known dofs among the global dofs of this rank's pieces.
     pub known: HashSet<u32>,
     /// The rows of each piece.
-    pub rows: Vec<Rows>,
+    pub rows: Vec<PieceRows>,
     /// The parts without their matrices, which the solver has.
-    pub parts: Vec<Part>,
+    pub parts: Vec<TornSubdomain>,
     pub sharers: Sharers,
     pub bodies: Bodies,
     /// Motions of every part, and whether its matrix maps each of them to zero.
-    pub motions: Vec<(Columns, Vec<bool>)>,
+    pub motions: Vec<(KernelVectors, Vec<bool>)>,
 }
 
 /// A local matrix of the host, and the global number of each of its rows; negative: none. A number that is listed
@@ -45,7 +45,7 @@ pub struct Local<'a> {
 }
 
 /// The numbers of other matrices, by part.
-pub struct Numbers {
+pub struct TornValues {
     /// Entries of each matrix in the order of its pattern.
     pub k: Vec<Vec<f64>>,
     /// Their diagonals.
@@ -56,17 +56,17 @@ pub struct Numbers {
     pub fixed: BTreeMap<u32, f64>,
 }
 
-impl Frame {
+impl TornFrame {
     /// Which motions of a part its matrix maps to zero.
-    pub fn cancelled(k: &Csr, entries: &[f64], motions: &Columns) -> Vec<bool> {
+    pub fn cancelled(k: &Csr, entries: &[f64], motions: &KernelVectors) -> Vec<bool> {
         let zero = |x: &Vec<f64>| cancels(k, entries, x, CANCELS);
         motions.iter().map(zero).collect()
     }
 
     /// The numbers of other matrices; `None` if they do not fit this frame. `patterns` has the matrices of the parts.
-    pub fn numbers(&self, patterns: &[&Csr], given: &[Local<'_>]) -> Option<Numbers> {
+    pub fn numbers(&self, patterns: &[&Csr], given: &[Local<'_>]) -> Option<TornValues> {
         let zeros = |k: &&Csr| vec![0.0; k.nnz()];
-        let mut out = Numbers {
+        let mut out = TornValues {
             k: patterns.iter().map(zeros).collect(),
             diagonal: Vec::new(),
             known: vec![Vec::new(); patterns.len()],
@@ -84,7 +84,7 @@ impl Frame {
             let (entries, (motions, before)) = (&out.k[j], &self.motions[j]);
             let diagonal = sound(k, entries)?;
             let same = self.in_one_piece(j, k, entries)
-                && Frame::cancelled(k, entries, motions) == *before;
+                && TornFrame::cancelled(k, entries, motions) == *before;
             if !same {
                 return None;
             }
@@ -126,7 +126,7 @@ impl Frame {
 }
 
 /// Adds the entries of a local matrix where the rows of its piece went; `None` if one of them has no place.
-fn add(patterns: &[&Csr], local: &Local<'_>, rows: &Rows, out: &mut Numbers) -> Option<()> {
+fn add(patterns: &[&Csr], local: &Local<'_>, rows: &PieceRows, out: &mut TornValues) -> Option<()> {
     let mut at = Vec::with_capacity(local.dofs.len());
     let mut seen = vec![false; rows.dofs.len()];
     for &dof in &*local.dofs {
@@ -150,16 +150,16 @@ fn add(patterns: &[&Csr], local: &Local<'_>, rows: &Rows, out: &mut Numbers) -> 
         let Some(r) = *r else { continue };
         let place = rows.place[r];
         match place {
-            Place::Unknown { part, row } => {
+            RowDestination::Unknown { part, row } => {
                 let (k, row) = (patterns[part as usize], row as usize);
                 for e in k.row_ptr[row]..k.row_ptr[row + 1] {
                     mark[k.col[e] as usize] = (i, e);
                 }
             }
-            Place::Known => {
+            RowDestination::Known => {
                 out.fixed.entry(rows.dofs[r]).or_default();
             }
-            Place::Empty => {}
+            RowDestination::Empty => {}
         }
         let (col, val) = local.k.row(i);
         for (&j, &v) in col.iter().zip(val).filter(|(_, v)| **v != 0.0) {
@@ -169,21 +169,25 @@ fn add(patterns: &[&Csr], local: &Local<'_>, rows: &Rows, out: &mut Numbers) -> 
             }
             coupled[r] |= c != r;
             match (place, rows.place[c]) {
-                (Place::Unknown { part, .. }, Place::Unknown { part: other, row }) => {
+                (
+                    RowDestination::Unknown { part, .. },
+                    RowDestination::Unknown { part: other, row },
+                ) => {
                     let (marked, e) = mark[row as usize];
                     if other != part || marked != i {
                         return None;
                     }
                     out.k[part as usize][e] += v;
                 }
-                (Place::Unknown { part, row }, Place::Known) => {
+                (RowDestination::Unknown { part, row }, RowDestination::Known) => {
                     out.known[part as usize].push((row, rows.dofs[c], v));
                 }
-                (Place::Known, _) if c == r => {
+                (RowDestination::Known, _) if c == r => {
                     *out.fixed.entry(rows.dofs[r]).or_default() += v;
                 }
-                (Place::Known, _) => {}
-                (Place::Unknown { .. }, Place::Empty) | (Place::Empty, _) => return None,
+                (RowDestination::Known, _) => {}
+                (RowDestination::Unknown { .. }, RowDestination::Empty)
+                | (RowDestination::Empty, _) => return None,
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The host's motions without energy: restricted to subdomains, and an orthogonal basis for every body.
 
-use super::parts::Part;
+use super::parts::TornSubdomain;
 use crate::Result;
 use parallel::exchange::{exchange_by_rank, highest};
 use parallel::halo::Halo;
@@ -12,19 +12,19 @@ use std::collections::HashMap;
 const DEPENDENT: f64 = 1e-8;
 
 /// Columns of one subdomain, by local dof.
-pub type Columns = Vec<Vec<f64>>;
+pub type KernelVectors = Vec<Vec<f64>>;
 
 /// The host's vectors at the dofs of every part; `None` if there are none. Collective.
 pub fn modes(
     vectors: Option<&[PetscVec]>,
     halo: &Halo,
     ghosts: &[u32],
-    parts: &[Part],
-) -> Result<Option<Vec<Columns>>> {
+    parts: &[TornSubdomain],
+) -> Result<Option<Vec<KernelVectors>>> {
     let Some(vectors) = vectors else {
         return Ok(None);
     };
-    let mut columns: Vec<Columns> = vec![Vec::new(); parts.len()];
+    let mut columns: Vec<KernelVectors> = vec![Vec::new(); parts.len()];
     let mut values = vec![0.0; ghosts.len()];
     for vector in vectors {
         halo.fetch(vector, &mut values)?;
@@ -37,9 +37,9 @@ pub fn modes(
 }
 
 /// An orthogonal basis of the span of the columns, with entries of order one.
-pub fn orthogonal(columns: &Columns) -> Columns {
+pub fn orthogonal(columns: &KernelVectors) -> KernelVectors {
     let mut rest = columns.clone();
-    let mut out: Columns = Vec::new();
+    let mut out: KernelVectors = Vec::new();
     let norm = |x: &Vec<f64>| x.iter().map(|v| v * v).sum::<f64>().sqrt();
     let lengths: Vec<f64> = rest.iter().map(norm).collect();
     for _ in 0..columns.len() {
@@ -73,7 +73,7 @@ pub fn orthogonal(columns: &Columns) -> Columns {
 /// Replaces the columns of every part by combinations that are orthogonal over the whole body, with entries of order
 /// one. All parts of a body use the same combinations: some rank adds up the products of all columns of a body, in the
 /// order of its parts. Collective.
-pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [Columns]) {
+pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [KernelVectors]) {
     let k = columns.iter().map(Vec::len).max().unwrap_or(0);
     let k = highest(session.comm(), k as f64) as usize;
     let (size, width) = (session.size(), k * k + 1);
@@ -109,7 +109,7 @@ pub fn over_bodies(session: &Session, body_of: &[usize], columns: &mut [Columns]
 }
 
 /// Coefficient vectors c that are orthonormal in the Gram matrix: cᵀ (Gram matrix) c = 1.
-pub(super) fn combinations(gram: &[f64], k: usize) -> Columns {
+pub(super) fn combinations(gram: &[f64], k: usize) -> KernelVectors {
     let length = |a: usize| match gram[a + a * k] {
         d if d > 0.0 => d.sqrt(),
         _ => 1.0,
@@ -128,7 +128,7 @@ pub(super) fn combinations(gram: &[f64], k: usize) -> Columns {
     .collect()
 }
 
-fn combined(list: &Columns, combinations: &Columns, n: f64) -> Columns {
+fn combined(list: &KernelVectors, combinations: &KernelVectors, n: f64) -> KernelVectors {
     let one = |c: &Vec<f64>| {
         let mut sum = vec![0.0; list.first().map_or(0, Vec::len)];
         for (x, factor) in list.iter().zip(c) {

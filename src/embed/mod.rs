@@ -7,21 +7,19 @@
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. The other data of the method are
 //! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), bodies (`bodies`),
 //! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
-//! and enough primal constraints that no subdomain floats in its body (`hold`).
+//! and enough primal constraints that no subdomain floats in its body (`rigid_constraints`).
 //!
 //! The host's rows come from any rank: the owners of their dofs say where the dofs are and which rows are connected
 //! (`touched`), the rows go to the ranks that take them (`placed`), values of known dofs follow at each solve
 //! (`known_dofs`).
 //!
 //! Data that follow from patterns and numbers alone stay in a `frame`: with other entries in the same matrices, other
-//! rows or other gaps (`again`) no more is done than they ask for, and `work` counts it.
+//! rows or other gaps (`renewal`) no more is done than they ask for, and `work` counts it.
 
-pub(crate) mod again;
 pub(crate) mod bodies;
 pub(crate) mod classes;
 pub(crate) mod contact;
 pub(crate) mod frame;
-pub(crate) mod hold;
 pub(crate) mod kernels;
 pub(crate) mod known_dofs;
 pub(crate) mod motions;
@@ -30,6 +28,8 @@ pub(crate) mod partition;
 pub(crate) mod parts;
 pub(crate) mod pieces;
 pub(crate) mod placed;
+pub(crate) mod renewal;
+pub(crate) mod rigid_constraints;
 pub(crate) mod rows;
 pub(crate) mod shares;
 pub(crate) mod sharing;
@@ -41,7 +41,7 @@ pub(crate) mod touched;
 pub(crate) mod work;
 
 pub use frame::Local;
-pub use pieces::Piece;
-pub use solver::{Embedded, GivenResults, Outcome};
+pub use pieces::TornPiece;
+pub use solver::{Embedded, EmbeddedResult, GivenResults};
 pub use torn::{GivenRow, Torn};
-pub use work::{SetUp, Work};
+pub use work::{SetUp, SetUpWork};

@@ -11,9 +11,9 @@
 
 use std::collections::HashMap;
 
-use super::kernels::{orthogonal, Columns};
+use super::kernels::{orthogonal, KernelVectors};
 use super::nullspace::{annihilates, kernel, Indefinite};
-use super::parts::Part;
+use super::parts::TornSubdomain;
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::{Error, Result};
@@ -32,9 +32,9 @@ const OUTSIDE: f64 = 1e-6;
 const NOTHING: f64 = 1e-8;
 
 /// The motions without energy of the subdomains.
-pub struct Motions {
+pub struct NearKernels {
     /// An orthogonal basis in every part, entries of order one.
-    bases: Vec<Columns>,
+    bases: Vec<KernelVectors>,
     /// Components of the field.
     pub components: usize,
     /// For every subdomain of this rank and their neighbours, the number of motions, and whether there are others
@@ -42,10 +42,10 @@ pub struct Motions {
     around: HashMap<u32, (usize, bool)>,
     /// Where the bases differ between subdomains: for every part, by higher neighbour, the motions of either side at
     /// the shared dofs. [shared dof][motion], orthogonal.
-    pairs: Option<Vec<HashMap<u32, Columns>>>,
+    pairs: Option<Vec<HashMap<u32, KernelVectors>>>,
 }
 
-impl Motions {
+impl NearKernels {
     /// Compares the host's vectors `modes`, if there are any, with the kernels of the matrices. Returns the motions,
     /// and the vectors if they may be used. Collective.
     ///
@@ -54,18 +54,18 @@ impl Motions {
     pub fn new(
         session: &Session,
         torn: &Torn,
-        parts: &[Part],
+        parts: &[TornSubdomain],
         sharers: &Sharers,
-        modes: Option<Vec<Columns>>,
-    ) -> Result<(Motions, Option<Vec<Columns>>)> {
-        let constants = |part: &Part| -> Columns {
+        modes: Option<Vec<KernelVectors>>,
+    ) -> Result<(NearKernels, Option<Vec<KernelVectors>>)> {
+        let constants = |part: &TornSubdomain| -> KernelVectors {
             let one = |c: usize| {
                 let value = |&dof: &u32| f64::from(u8::from(torn.component(dof) == c));
                 part.dofs.iter().map(value).collect()
             };
             (0..torn.block_size).map(one).collect()
         };
-        let known: Vec<Columns> = match &modes {
+        let known: Vec<KernelVectors> = match &modes {
             Some(columns) => columns.iter().map(orthogonal).collect(),
             None => parts.iter().map(|p| orthogonal(&constants(p))).collect(),
         };
@@ -73,7 +73,7 @@ impl Motions {
         let found = found.map(|(j, (part, known))| {
             kernel(&part.k, known).map_err(|e| indefinite(sharers.first + j, part, e))
         });
-        let found: Vec<Columns> = session.agree(found.collect::<Result<_>>())?;
+        let found: Vec<KernelVectors> = session.agree(found.collect::<Result<_>>())?;
         let beyond: Vec<bool> = found
             .iter()
             .zip(&known)
@@ -96,7 +96,7 @@ impl Motions {
         let around = sharers.around(session, &facts.collect::<Vec<_>>());
         let of = |(s, [n, beyond]): (u32, [usize; 2])| (s, (n, beyond != 0));
         let pairs = own.then(|| pairs(session, sharers, &bases));
-        let motions = Motions {
+        let motions = NearKernels {
             bases,
             components: torn.block_size,
             around: around.into_iter().map(of).collect(),
@@ -106,12 +106,12 @@ impl Motions {
     }
 
     /// The motions of every part.
-    pub fn bases(&self) -> &[Columns] {
+    pub fn bases(&self) -> &[KernelVectors] {
         &self.bases
     }
 
     /// The motions of part `j` and its neighbour `high` at the dofs `dofs` that they share: a row for each dof.
-    pub fn between(&self, j: usize, high: u32, dofs: &[u32]) -> Columns {
+    pub fn between(&self, j: usize, high: u32, dofs: &[u32]) -> KernelVectors {
         match &self.pairs {
             Some(pairs) => pairs[j][&high].clone(),
             None => {
@@ -141,7 +141,7 @@ impl Motions {
 }
 
 /// Whether every column of `found` is a combination of the orthogonal columns `known`.
-fn spans(known: &Columns, found: &Columns) -> bool {
+fn spans(known: &KernelVectors, found: &KernelVectors) -> bool {
     found.iter().all(|x| {
         let mut rest = x.clone();
         for q in known {
@@ -159,7 +159,11 @@ fn norm(x: &[f64]) -> f64 {
 
 /// For every part, by higher neighbour, an orthogonal basis of the motions of both at the dofs that they share.
 /// Collective.
-fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap<u32, Columns>> {
+fn pairs(
+    session: &Session,
+    sharers: &Sharers,
+    bases: &[KernelVectors],
+) -> Vec<HashMap<u32, KernelVectors>> {
     // Both sides list the shared dofs by increasing global number. The higher one sends its motions, column by column.
     let mut outgoing = Parcels::for_each_rank(session.comm());
     for (j, basis) in bases.iter().enumerate() {
@@ -171,13 +175,13 @@ fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap
             outgoing[sharers.owners.of(*low)].push([*low, me, dofs.len() as u32], entries);
         }
     }
-    let mut theirs: HashMap<(u32, u32), Columns> = HashMap::new();
+    let mut theirs: HashMap<(u32, u32), KernelVectors> = HashMap::new();
     let received = exchange_by_rank(session.comm(), outgoing);
     for ([low, high, n], entries) in received.iter().flat_map(Parcels::iter) {
         let columns = entries.chunks_exact(n.max(1) as usize);
         theirs.insert((low, high), columns.map(<[f64]>::to_vec).collect());
     }
-    let of_part = |(j, basis): (usize, &Columns)| {
+    let of_part = |(j, basis): (usize, &KernelVectors)| {
         let me = (sharers.first + j) as u32;
         let above = sharers.neighbours[j].iter().filter(|n| n.0 > me);
         above
@@ -196,7 +200,7 @@ fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap
 }
 
 /// The error for a subdomain matrix with a negative eigenvalue.
-fn indefinite(subdomain: usize, part: &Part, e: Indefinite) -> Error {
+fn indefinite(subdomain: usize, part: &TornSubdomain, e: Indefinite) -> Error {
     let energy = e
         .energy
         .map_or(String::new(), |e| format!(" ({e:.2e} of its terms)"));

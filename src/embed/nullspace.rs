@@ -12,7 +12,7 @@
 
 use std::sync::Arc;
 
-use super::kernels::{orthogonal, Columns};
+use super::kernels::{orthogonal, KernelVectors};
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use cholesky::multifrontal::{PartialCholesky, SingularInterior};
@@ -53,7 +53,7 @@ pub struct Indefinite {
 ///
 /// # Errors
 /// A matrix that is not positive semidefinite.
-pub fn kernel(k: &Csr, guess: &Columns) -> Result<Columns, Indefinite> {
+pub fn kernel(k: &Csr, guess: &KernelVectors) -> Result<KernelVectors, Indefinite> {
     let mut held = spread_dofs(guess);
     let mut passes = 0;
     let (factor, s) = loop {
@@ -78,7 +78,7 @@ pub fn kernel(k: &Csr, guess: &Columns) -> Result<Columns, Indefinite> {
         .iter()
         .map(|&i| k.get(i as usize, i as usize).sqrt())
         .collect();
-    let mut found = Columns::new();
+    let mut found = KernelVectors::new();
     for z in low_end(&s, &scale) {
         let mut v = vec![0.0; k.n()];
         for ((&i, z), scale) in held.iter().zip(&z).zip(&scale) {
@@ -101,10 +101,10 @@ pub fn kernel(k: &Csr, guess: &Columns) -> Result<Columns, Indefinite> {
 }
 
 /// Eigenvectors of the scaled S with eigenvalues below [`SMALL`].
-fn low_end(s: &Dense, scale: &[f64]) -> Columns {
+fn low_end(s: &Dense, scale: &[f64]) -> KernelVectors {
     let n = scale.len();
     if n == 0 {
-        return Columns::new();
+        return KernelVectors::new();
     }
     let a = faer::Mat::from_fn(n, n, |i, j| s.get(i, j) / (scale[i] * scale[j]));
     let eigen = a
@@ -118,7 +118,7 @@ fn low_end(s: &Dense, scale: &[f64]) -> Columns {
 
 /// As many dofs as there are independent motions, far from each other: the dof that moves most, then the one that moves
 /// most in what is left (Gram–Schmidt on rows).
-fn spread_dofs(motions: &Columns) -> Vec<u32> {
+fn spread_dofs(motions: &KernelVectors) -> Vec<u32> {
     let mut rest = orthogonal(motions);
     let mut out = Vec::new();
     for _ in 0..rest.len() {

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::pieces::Piece;
-use super::states::State;
+use super::pieces::TornPiece;
+use super::states::GlobalDofState;
 use super::torn::Torn;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
@@ -18,7 +18,7 @@ pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
 
 /// A future subdomain.
 #[derive(Debug, Clone)]
-pub struct Part {
+pub struct TornSubdomain {
     /// The body that the host named, if any.
     pub body: Option<u64>,
     /// Its matrix, restricted to unknowns.
@@ -31,7 +31,7 @@ pub struct Part {
 
 /// Where a row of a piece went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum RowDestination {
     /// To this row of this part of the rank.
     Unknown { part: u32, row: u32 },
     /// Nowhere: its dof is known.
@@ -42,11 +42,11 @@ pub enum Place {
 
 /// The rows of a piece.
 #[derive(Debug, Clone)]
-pub struct Rows {
+pub struct PieceRows {
     /// Global dof of each, strictly increasing.
     pub dofs: Vec<u32>,
     /// Where each went.
-    pub place: Vec<Place>,
+    pub place: Vec<RowDestination>,
     /// Whether each has more than its diagonal.
     pub coupled: Vec<bool>,
 }
@@ -55,7 +55,10 @@ pub struct Rows {
 ///
 /// # Errors
 /// A matrix that is not symmetric, or whose diagonal is not that of a stiffness matrix.
-pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<(Vec<Part>, Vec<Rows>)> {
+pub fn parts(
+    torn: &Torn,
+    states: &HashMap<u32, GlobalDofState>,
+) -> Result<(Vec<TornSubdomain>, Vec<PieceRows>)> {
     let (mut out, mut rows) = (Vec::new(), Vec::new());
     for piece in &torn.pieces {
         symmetric(piece, states)?;
@@ -63,8 +66,8 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<(Vec<Part>, Ve
         let n_parts = label.iter().flatten().max().map_or(0, |&l| l as usize + 1);
         // Place of each dof in its part.
         let mut place = vec![0; piece.dofs.len()];
-        let mut made: Vec<Part> = (0..n_parts)
-            .map(|_| Part {
+        let mut made: Vec<TornSubdomain> = (0..n_parts)
+            .map(|_| TornSubdomain {
                 body: piece.body,
                 k: Csr {
                     row_ptr: vec![0],
@@ -98,14 +101,14 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<(Vec<Part>, Ve
         }
         let first = out.len() as u32;
         let place = |(i, l): (usize, &Option<u32>)| match l {
-            Some(l) => Place::Unknown {
+            Some(l) => RowDestination::Unknown {
                 part: first + l,
                 row: place[i],
             },
-            None if states[&piece.dofs[i]].is_free() => Place::Empty,
-            None => Place::Known,
+            None if states[&piece.dofs[i]].is_free() => RowDestination::Empty,
+            None => RowDestination::Known,
         };
-        rows.push(Rows {
+        rows.push(PieceRows {
             dofs: piece.dofs.clone(),
             place: label.iter().enumerate().map(place).collect(),
             coupled: (0..label.len()).map(|i| piece.couples(i)).collect(),
@@ -117,7 +120,11 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<(Vec<Part>, Ve
 
 /// The part of each dof of a piece; parts are numbered by lowest dof. `None` for known dofs and for dofs without
 /// stiffness in the piece. All components of a node belong to the same part.
-fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<Option<u32>> {
+fn components(
+    torn: &Torn,
+    piece: &TornPiece,
+    states: &HashMap<u32, GlobalDofState>,
+) -> Vec<Option<u32>> {
     let n = piece.dofs.len();
     let unknown = |i: usize| states[&piece.dofs[i]].is_free() && !piece.k.row(i).0.is_empty();
     let mut label = vec![None; n];
@@ -149,7 +156,7 @@ fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<O
 
 /// Returns an error if the matrix of the unknowns has entries that are no numbers, a diagonal that is not positive, or
 /// is not symmetric. The first fault explains the others: a zero diagonal leaves nothing to compare entries with.
-fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
+fn symmetric(piece: &TornPiece, states: &HashMap<u32, GlobalDofState>) -> Result<()> {
     let free = |i: usize| states[&piece.dofs[i]].is_free();
     let unknowns = || (0..piece.dofs.len()).filter(|&i| free(i));
     for i in unknowns() {

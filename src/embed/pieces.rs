@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 /// One subdomain matrix of the host.
 #[derive(Debug, Clone)]
-pub struct Piece {
+pub struct TornPiece {
     /// Its rows and columns. Exact zeros are left out but for those in blocks of two nodes that are coupled: with other
     /// coefficients they are none, and the pattern stays.
     pub k: Csr,
@@ -16,7 +16,7 @@ pub struct Piece {
     pub body: Option<u64>,
 }
 
-impl Piece {
+impl TornPiece {
     /// Whether some row has more than its diagonal.
     pub fn is_coupled(&self) -> bool {
         (0..self.k.n()).any(|i| self.couples(i))
@@ -36,7 +36,7 @@ pub fn torn_from(
     block_size: usize,
     copies: Option<usize>,
     body: Option<u64>,
-) -> Vec<Piece> {
+) -> Vec<TornPiece> {
     match copies {
         Some(rows) => pieces(k, map, [block_size, rows], body),
         None => piece(k, map, block_size, body).into_iter().collect(),
@@ -45,7 +45,7 @@ pub fn torn_from(
 
 /// A local matrix by increasing global dofs. Rows of the same dof are added (a periodic mesh on one rank has such
 /// rows), rows without a dof are left out. `None` if no row is left.
-fn piece(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Option<Piece> {
+fn piece(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Option<TornPiece> {
     let dofs = distinct(map.iter().filter(|&&g| g >= 0).map(|&g| g as u32));
     if dofs.is_empty() {
         return None;
@@ -65,7 +65,7 @@ fn piece(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Option<P
     let k = Csr::from_triplets(dofs.len(), &triplets);
     let node = |i: usize| dofs[i] as usize / block_size;
     let k = without_zeros(&k, &node);
-    Some(Piece { k, dofs, body })
+    Some(TornPiece { k, dofs, body })
 }
 
 /// The matrix without its exact zeros, but for those between rows that are coupled, in blocks of two nodes that have
@@ -129,7 +129,7 @@ fn pieces(
     map: &[i32],
     [block_size, together]: [usize; 2],
     body: Option<u64>,
-) -> Vec<Piece> {
+) -> Vec<TornPiece> {
     let n = k.n();
     let node = |i: usize| i / together;
     let alone = |i: usize| {

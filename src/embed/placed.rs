@@ -9,20 +9,20 @@ use parallel::parcels::Parcels;
 use std::collections::BTreeMap;
 
 /// A row with at least one unknown.
-pub struct Placed {
+pub struct LocatedRow {
     /// Its number among the rows that its rank gave.
     pub number: usize,
     kind: RowKind,
     gap: f64,
     /// Its block of connected rows.
     pub block: u32,
-    terms: Vec<Term>,
+    terms: Vec<LocatedTerm>,
 }
 
 /// A term of a row; the dofs of a row differ.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub struct Term {
+pub struct LocatedTerm {
     dof: u64,
     coefficient: f64,
     /// The [`code`](Holder::code) of the holder.
@@ -39,18 +39,22 @@ pub struct SentRow {
     block: u32,
 }
 
-impl Term {
+impl LocatedTerm {
     fn holder(&self) -> Holder {
         Holder::of_code(self.holder)
     }
 }
 
-impl Placed {
+impl LocatedRow {
     /// Row `number` of this rank. A row without unknowns is left out: the solver cannot influence whether it holds.
     ///
     /// # Errors
     /// A dof that no subdomain has.
-    pub fn new(number: usize, row: &GivenRow, touched: &Touched) -> Result<Option<Placed>, u32> {
+    pub fn new(
+        number: usize,
+        row: &GivenRow,
+        touched: &Touched,
+    ) -> Result<Option<LocatedRow>, u32> {
         let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
         for &(dof, c) in &row.terms {
             *sums.entry(dof).or_default() += c;
@@ -64,13 +68,13 @@ impl Placed {
                 Holder::Body(_) => block = Some(root),
                 Holder::Known(_) => {}
             }
-            terms.push(Term {
+            terms.push(LocatedTerm {
                 dof: dof.into(),
                 coefficient,
                 holder: holder.code(),
             });
         }
-        Ok(block.map(|block| Placed {
+        Ok(block.map(|block| LocatedRow {
             number,
             kind: row.kind,
             gap: row.gap,
@@ -80,7 +84,7 @@ impl Placed {
     }
 
     /// Adds the row to those that are sent.
-    pub fn give(&self, to: &mut Parcels<SentRow, Term>) {
+    pub fn give(&self, to: &mut Parcels<SentRow, LocatedTerm>) {
         let row = SentRow {
             number: self.number,
             gap: self.gap,
@@ -91,8 +95,8 @@ impl Placed {
     }
 
     /// The row that another rank has sent.
-    pub fn received((row, terms): (SentRow, &[Term])) -> Placed {
-        Placed {
+    pub fn received((row, terms): (SentRow, &[LocatedTerm])) -> LocatedRow {
+        LocatedRow {
             number: row.number,
             kind: match row.inequality {
                 0 => RowKind::Equality,

@@ -1,8 +1,8 @@
 //! Ties between bodies: where several bodies share a global dof, their displacements are equal.
 
 use super::bodies::Bodies;
-use super::contact::Contact;
-use super::parts::{body_dof, Part};
+use super::contact::HostContact;
+use super::parts::{body_dof, TornSubdomain};
 use super::sharing::Sharers;
 use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
 use base::linalg::sorted::distinct;
@@ -14,10 +14,10 @@ use petsc::Session;
 pub fn rows(
     session: &Session,
     n_global: usize,
-    parts: &[Part],
+    parts: &[TornSubdomain],
     sharers: &Sharers,
     bodies: &Bodies,
-    contact: &Contact,
+    contact: &HostContact,
 ) -> Vec<Row> {
     let tie = |a: u32, b: u32, dof: u32| Row {
         terms: vec![

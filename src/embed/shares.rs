@@ -2,16 +2,16 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::frame::Numbers;
-use super::parts::Part;
-use super::states::State;
+use super::frame::TornValues;
+use super::parts::TornSubdomain;
+use super::states::GlobalDofState;
 use super::torn::Torn;
 use crate::{Error, Result};
 use parallel::halo::Halo;
 use petsc::{Session, Vec as PetscVec};
 
 /// A subdomain's share in global vectors.
-struct Share {
+struct SubdomainMap {
     /// Place of each local dof among the ghosts.
     ghost: Vec<u32>,
     /// The global dofs.
@@ -51,12 +51,12 @@ impl Fixed {
 /// The shares of this rank's subdomains, and the known dofs of its pieces.
 pub struct Shares {
     n_ghosts: usize,
-    shares: Vec<Share>,
+    shares: Vec<SubdomainMap>,
     fixed: Vec<Fixed>,
 }
 
 /// Values of known dofs, by ghost.
-pub type Values = HashMap<u32, f64>;
+pub type KnownDofValues = HashMap<u32, f64>;
 
 impl Shares {
     /// Collective.
@@ -66,12 +66,12 @@ impl Shares {
     pub fn new(
         session: &Session,
         torn: &Torn,
-        parts: &[Part],
-        states: &HashMap<u32, State>,
+        parts: &[TornSubdomain],
+        states: &HashMap<u32, GlobalDofState>,
         (ghosts, halo): (&[u32], &Halo),
     ) -> Result<Shares> {
         let place = |dof: &u32| ghosts.binary_search(dof).expect("all dofs are ghosts") as u32;
-        let share = |part: &Part| Share {
+        let share = |part: &TornSubdomain| SubdomainMap {
             ghost: part.dofs.iter().map(place).collect(),
             dofs: part.dofs.clone(),
             weight: (0..part.k.n())
@@ -125,8 +125,8 @@ impl Shares {
     ///
     /// # Errors
     /// PETSc's own.
-    pub fn renew(&mut self, halo: &Halo, layout: &PetscVec, new: &mut Numbers) -> Result<()> {
-        let own = |f: &Fixed, new: &Numbers| new.fixed.get(&f.dof).copied().unwrap_or(0.0);
+    pub fn renew(&mut self, halo: &Halo, layout: &PetscVec, new: &mut TornValues) -> Result<()> {
+        let own = |f: &Fixed, new: &TornValues| new.fixed.get(&f.dof).copied().unwrap_or(0.0);
         let mut diagonal = vec![0.0; self.n_ghosts];
         for (share, d) in self.shares.iter().zip(&new.diagonal) {
             let terms = share.ghost.iter().zip(d);
@@ -171,7 +171,7 @@ impl Shares {
     ///
     /// # Errors
     /// A load on an empty row.
-    pub fn known(&self, load: &[f64], given: &[f64]) -> Result<Values> {
+    pub fn known(&self, load: &[f64], given: &[f64]) -> Result<KnownDofValues> {
         let value = |fixed: &Fixed| {
             let b = load[fixed.ghost as usize];
             if fixed.held {
@@ -192,14 +192,14 @@ impl Shares {
     }
 
     /// The values of the known dofs by global number.
-    pub fn by_dof(&self, values: &Values) -> HashMap<u32, f64> {
+    pub fn by_dof(&self, values: &KnownDofValues) -> HashMap<u32, f64> {
         let pair = |fixed: &Fixed| (fixed.dof, values[&fixed.ghost]);
         self.fixed.iter().map(pair).collect()
     }
 
     /// The load of every subdomain.
-    pub fn loads(&self, load: &[f64], values: &Values) -> Vec<Vec<f64>> {
-        let torn = |share: &Share| {
+    pub fn loads(&self, load: &[f64], values: &KnownDofValues) -> Vec<Vec<f64>> {
+        let torn = |share: &SubdomainMap| {
             let terms = share.ghost.iter().zip(&share.weight);
             let mut f: Vec<f64> = terms.map(|(&g, w)| w * load[g as usize]).collect();
             for &(i, g, v) in &share.known {
@@ -212,7 +212,7 @@ impl Shares {
 
     /// This rank's part of the solution by ghost, from the displacements of its subdomains. Within the tolerance,
     /// copies in different bodies may differ; the average weights them by stiffness.
-    pub fn together(&self, u: &[Vec<f64>], values: &Values) -> Vec<f64> {
+    pub fn together(&self, u: &[Vec<f64>], values: &KnownDofValues) -> Vec<f64> {
         let mut ghost = vec![0.0; self.n_ghosts];
         for (share, u) in self.shares.iter().zip(u) {
             for ((&g, w), u) in share.ghost.iter().zip(&share.weight).zip(u) {

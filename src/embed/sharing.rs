@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::parts::Part;
+use super::parts::TornSubdomain;
 use base::linalg::sorted::distinct;
 use bytemuck::{Pod, Zeroable};
 use mpi::traits::Communicator;
@@ -35,7 +35,7 @@ struct DofHolder {
 
 impl Sharers {
     /// Finds the shared dofs. Collective.
-    pub fn new(session: &Session, parts: &[Part]) -> Sharers {
+    pub fn new(session: &Session, parts: &[TornSubdomain]) -> Sharers {
         let comm = session.comm();
         let size = comm.size() as usize;
         let (first, n_subdomains) = offsets(comm, parts.len());
@@ -101,7 +101,7 @@ impl Sharers {
             .collect()
     }
 
-    fn of_part(&self, j: usize, part: &Part) -> Vec<(u32, Vec<u32>)> {
+    fn of_part(&self, j: usize, part: &TornSubdomain) -> Vec<(u32, Vec<u32>)> {
         let mut found: HashMap<u32, Vec<u32>> = HashMap::new();
         let me = (self.first + j) as u32;
         for (i, &dof) in part.dofs.iter().enumerate() {

@@ -5,23 +5,23 @@ use std::collections::HashSet;
 
 use super::bodies::{by_most_dofs, named_groups, Bodies};
 use super::classes::{classes, in_space};
-use super::contact::Contact;
-use super::frame::Frame;
-use super::hold::Shape;
+use super::contact::HostContact;
+use super::frame::TornFrame;
 use super::kernels;
-use super::motions::Motions;
+use super::motions::NearKernels;
 use super::partition::partition;
 use super::parts::parts;
+use super::rigid_constraints::ConstraintContext;
 use super::rows::rows;
-use super::shares::{Shares, Values};
+use super::shares::{KnownDofValues, Shares};
 use super::sharing::Sharers;
 use super::states::states;
-use super::subdomains::{subdomain, Known};
+use super::subdomains::{subdomain, SubdomainProperties};
 use super::torn::{GivenRow, Torn};
-use super::touched::Here;
+use super::touched::RankProblem;
 use crate::contact::{Observer, State as ContactState};
 use crate::embed::bodies;
-use crate::feti::krylov::solve::Look;
+use crate::feti::krylov::solve::JudgeTiming;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
@@ -33,7 +33,7 @@ use petsc::{Session, Vec as PetscVec};
 
 /// The result of a solve.
 #[derive(Debug, Clone)]
-pub struct Outcome {
+pub struct EmbeddedResult {
     /// Iterations.
     pub iterations: usize,
     /// Why it stopped.
@@ -61,23 +61,23 @@ pub struct GivenResults {
 pub struct Embedded {
     pub(super) session: Session,
     pub(super) halo: Halo,
-    pub(super) frame: Frame,
+    pub(super) frame: TornFrame,
     pub(super) shares: Shares,
     /// The solver; monitors borrow it during a solve.
     pub(super) solver: RefCell<FetiFeti>,
     /// Known dofs of the present load, by ghost.
-    pub(super) values: RefCell<Values>,
-    pub(super) contact: Contact,
+    pub(super) values: RefCell<KnownDofValues>,
+    pub(super) contact: HostContact,
     /// The rows that this rank gave.
     pub(super) given: Vec<GivenRow>,
     /// Number of rows that tie bodies; the host's rows come after them.
     pub(super) n_ties: usize,
     /// Where the last contact loop ended.
-    pub(super) reached: RefCell<Option<Reached>>,
+    pub(super) reached: RefCell<Option<ContactEnd>>,
 }
 
 /// The end of a contact loop, from which the next one starts.
-pub(super) struct Reached {
+pub(super) struct ContactEnd {
     pub state: ContactState,
     /// Multipliers inside bodies.
     pub inside: Vec<f64>,
@@ -116,7 +116,7 @@ impl Embedded {
         let sharers = Sharers::new(session, &parts);
         let modes = torn.modes.as_deref();
         let modes = kernels::modes(modes, &halo, &ghosts, &parts)?;
-        let (motions, mut modes) = Motions::new(session, torn, &parts, &sharers, modes)?;
+        let (motions, mut modes) = NearKernels::new(session, torn, &parts, &sharers, modes)?;
         let bonds = motions.bonds(&parts, &sharers);
         let n = sharers.n_subdomains;
         let given = torn.pieces.iter().filter(|p| p.is_coupled()).count();
@@ -140,7 +140,7 @@ impl Embedded {
             kernels::over_bodies(session, &bodies.mine, columns);
         }
         let classes = classes(session, torn, &parts, &sharers);
-        let shape = Shape {
+        let shape = ConstraintContext {
             space: in_space(session, &classes),
             bodies,
             primal,
@@ -153,7 +153,7 @@ impl Embedded {
         }
         let known = states.iter().filter(|(_, s)| !s.is_free());
         let known: HashSet<u32> = known.map(|(dof, _)| *dof).collect();
-        let here = Here {
+        let here = RankProblem {
             layout: &torn.layout,
             ghosts: &ghosts,
             halo: &halo,
@@ -161,7 +161,7 @@ impl Embedded {
             parts: &parts,
             body_of: &shape.bodies.mine,
         };
-        let contact = Contact::new(session, &torn.rows, &here)?;
+        let contact = HostContact::new(session, &torn.rows, &here)?;
         let (n, bodies) = (torn.n_global, &shape.bodies);
         let mut rows = rows(session, n, &parts, &sharers, bodies, &contact);
         let n_ties = rows.len();
@@ -173,13 +173,15 @@ impl Embedded {
             known.map(|m| m[j].clone())
         };
         let shares = Shares::new(session, torn, &parts, &states, (&ghosts, &halo))?;
-        let kernels = parts
-            .iter()
-            .zip(motions.bases())
-            .map(|(part, basis)| (basis.clone(), Frame::cancelled(&part.k, &part.k.val, basis)));
+        let kernels = parts.iter().zip(motions.bases()).map(|(part, basis)| {
+            (
+                basis.clone(),
+                TornFrame::cancelled(&part.k, &part.k.val, basis),
+            )
+        });
         let kernels = kernels.collect();
         let local = parts.iter_mut().enumerate().map(|(j, part)| {
-            let known = Known {
+            let known = SubdomainProperties {
                 index: sharers.first + j,
                 near_kernel: columns(j),
                 classes: &classes[j],
@@ -204,7 +206,7 @@ impl Embedded {
         Ok(Embedded {
             session: session.clone(),
             halo,
-            frame: Frame {
+            frame: TornFrame {
                 n_global: torn.n_global,
                 block_size: torn.block_size,
                 layout: torn.layout.clone(),
@@ -236,8 +238,8 @@ impl Embedded {
         &self,
         b: &PetscVec,
         x: &PetscVec,
-        enough: &dyn Fn(&PetscVec, Look) -> Result<Option<f64>>,
-    ) -> Result<Outcome> {
+        enough: &dyn Fn(&PetscVec, JudgeTiming) -> Result<Option<f64>>,
+    ) -> Result<EmbeddedResult> {
         self.load(b, None)?;
         let solution = self.solver().judged(&|u, look| {
             self.put_together(u, x)?;
@@ -259,14 +261,14 @@ impl Embedded {
         held: Option<&PetscVec>,
         x: &PetscVec,
         observe: &mut Observer,
-    ) -> Result<Outcome> {
+    ) -> Result<EmbeddedResult> {
         self.load(b, held)?;
         let start = self.reached.take().map(|reached| reached.state);
         let start = start.filter(|_| self.contact.inequalities);
         let solution = self.solver().observed(start.as_ref(), observe)?;
         self.put_together(&solution.u, x)?;
         let ties = solution.rows()[..self.n_ties].iter();
-        self.reached.replace(Some(Reached {
+        self.reached.replace(Some(ContactEnd {
             state: solution.warm_start(),
             inside: solution.inside_bodies().to_vec(),
             ties: ties.map(|row| row.multiplier).collect(),
@@ -350,9 +352,9 @@ impl Embedded {
     }
 }
 
-fn outcome(solution: &Solution) -> Outcome {
+fn outcome(solution: &Solution) -> EmbeddedResult {
     let estimate = solution.estimate.as_ref();
-    Outcome {
+    EmbeddedResult {
         iterations: solution.iterations,
         status: solution.status.clone(),
         spectrum: estimate.map(|s| (s.lambda_max, s.lambda_min)),

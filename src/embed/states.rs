@@ -13,24 +13,24 @@ use petsc::Session;
 
 /// The state of a global dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum State {
+pub enum GlobalDofState {
     /// An unknown, with the sum of the diagonal entries of its copies.
     Free(f64),
     /// Known from its own row, with the sum of the diagonal entries; 0 for an empty row.
     Fixed(f64),
 }
 
-impl State {
+impl GlobalDofState {
     /// The sum of the diagonal entries.
     pub fn diagonal(self) -> f64 {
         match self {
-            State::Free(d) | State::Fixed(d) => d,
+            GlobalDofState::Free(d) | GlobalDofState::Fixed(d) => d,
         }
     }
 
     /// Whether the dof is unknown.
     pub fn is_free(self) -> bool {
-        matches!(self, State::Free(_))
+        matches!(self, GlobalDofState::Free(_))
     }
 }
 
@@ -44,7 +44,7 @@ struct DofState {
 }
 
 /// The state of every dof that this rank's pieces touch. Collective.
-pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
+pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, GlobalDofState> {
     let comm = session.comm();
     let size = comm.size() as usize;
     let mut reports: Vec<Vec<DofState>> = vec![Vec::new(); size];
@@ -72,8 +72,8 @@ pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
         .iter()
         .map(|list| list.iter().map(answer).collect());
     let state = |of: DofState| match of.full {
-        0 => State::Fixed(of.diagonal),
-        _ => State::Free(of.diagonal),
+        0 => GlobalDofState::Fixed(of.diagonal),
+        _ => GlobalDofState::Free(of.diagonal),
     };
     let answers = exchange(comm, replies.collect()).into_iter();
     answers.map(|of| (of.dof, state(of))).collect()

@@ -1,20 +1,20 @@
 //! Subdomains of [`Problem`](crate::Problem), from parts, classes and additional constraints.
 
-use super::classes::Class;
-use super::hold::Shape;
-use super::kernels::Columns;
-use super::parts::{body_dof, Part};
+use super::classes::InterfaceClass;
+use super::kernels::KernelVectors;
+use super::parts::{body_dof, TornSubdomain};
+use super::rigid_constraints::ConstraintContext;
 use crate::substructures::{Entity, EntityKind, Subdomain};
 use std::collections::BTreeSet;
 
 /// Properties of a part besides its matrix.
-pub struct Known<'a> {
+pub struct SubdomainProperties<'a> {
     /// Its number among the subdomains of all ranks.
     pub index: usize,
     /// Motions without energy.
-    pub near_kernel: Option<Columns>,
+    pub near_kernel: Option<KernelVectors>,
     /// Vertices, edges and faces.
-    pub classes: &'a [Class],
+    pub classes: &'a [InterfaceClass],
     /// Pairs of subdomains whose common faces get an average, as edges do.
     pub averaged: &'a BTreeSet<(u32, u32)>,
     /// Local dofs that are primal in addition to the vertices.
@@ -22,13 +22,18 @@ pub struct Known<'a> {
 }
 
 /// The subdomain, without a load; `n_global` is the number of global dofs. The matrix is taken out of the part.
-pub fn subdomain(n_global: usize, part: &mut Part, shape: &Shape, known: Known) -> Subdomain {
+pub fn subdomain(
+    n_global: usize,
+    part: &mut TornSubdomain,
+    shape: &ConstraintContext,
+    known: SubdomainProperties,
+) -> Subdomain {
     let body = shape.bodies.of(known.index as u32);
-    let (vertices, others): (Vec<&Class>, Vec<&Class>) =
+    let (vertices, others): (Vec<&InterfaceClass>, Vec<&InterfaceClass>) =
         known.classes.iter().partition(|c| c.is_vertex());
     let vertices = vertices.iter().flat_map(|c| &c.dofs);
     let primal: BTreeSet<u32> = vertices.chain(known.nodes).copied().collect();
-    let entity = |c: &&Class| Entity {
+    let entity = |c: &&InterfaceClass| Entity {
         kind: match c.sharers[..] {
             [a, b] if known.averaged.contains(&(a, b)) => EntityKind::Edge,
             _ => c.kind(shape.space),

@@ -1,11 +1,11 @@
 //! The input of a host program: subdomain matrices, not yet grouped or classified.
 
-use super::pieces::{torn_from, Piece};
+use super::pieces::{torn_from, TornPiece};
 use crate::substructures::RowKind;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 use parallel::halo::Halo;
-use petsc::{Attached, Mat, Session, Vec as PetscVec};
+use petsc::{AttachedNullSpace, Mat, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// A row of the host: Σ coefficient · u(global dof) = or ≤ gap.
@@ -26,7 +26,7 @@ pub struct Torn {
     /// Consecutive global dofs that belong to one node: the components of the field.
     pub block_size: usize,
     /// This rank's pieces.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<TornPiece>,
     /// A vector of the host's layout.
     pub layout: PetscVec,
     /// Vectors that span every kernel a subdomain matrix may have without boundary conditions.
@@ -110,7 +110,7 @@ pub fn unassembled(a: &Mat) -> Result<()> {
 }
 
 /// The vectors of a null space, including the constants.
-pub fn spanned(layout: &PetscVec, attached: Attached) -> Result<Vec<PetscVec>> {
+pub fn spanned(layout: &PetscVec, attached: AttachedNullSpace) -> Result<Vec<PetscVec>> {
     let mut modes = attached.vectors;
     if attached.constants {
         let ones = layout.duplicate()?;

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::parts::Part;
+use super::parts::TornSubdomain;
 use super::torn::GivenRow;
 use crate::Result;
 use base::linalg::sorted::distinct;
@@ -16,7 +16,7 @@ use parallel::owners::Owners;
 use petsc::{Session, Vec as PetscVec};
 
 /// This rank's part of the host's problem.
-pub struct Here<'a> {
+pub struct RankProblem<'a> {
     /// A vector of the host's layout.
     pub layout: &'a PetscVec,
     /// The global dofs of this rank's pieces, increasing.
@@ -25,7 +25,7 @@ pub struct Here<'a> {
     /// The known dofs among the global dofs of this rank's pieces.
     pub known: &'a HashSet<u32>,
     /// This rank's subdomains.
-    pub parts: &'a [Part],
+    pub parts: &'a [TornSubdomain],
     /// The body of each.
     pub body_of: &'a [usize],
 }
@@ -86,13 +86,13 @@ impl Touched {
     ///
     /// # Errors
     /// PETSc's own.
-    pub fn new(session: &Session, given: &[GivenRow], here: &Here<'_>) -> Result<Touched> {
+    pub fn new(session: &Session, given: &[GivenRow], here: &RankProblem<'_>) -> Result<Touched> {
         let range = here.layout.ownership_range();
         let owners = Owners::new(session.comm(), range.start);
         let dofs = distinct(given.iter().flat_map(|row| &row.terms).map(|t| t.0));
         let mut owned = asked(session, &owners, &dofs);
         reported(session, &owners, here, &mut owned)?;
-        let holders = told(session, &owned);
+        let holders = report_holders(session, &owned);
         let unknown = |k: &usize| matches!(holders[*k], Holder::Body(_));
         let place = |dof: &u32| dofs.binary_search(dof).expect("every dof is in the list");
         let mut sets = UnionFind::new(dofs.len());
@@ -140,7 +140,7 @@ fn asked(session: &Session, owners: &Owners, dofs: &[u32]) -> BTreeMap<u32, Owne
 fn reported(
     session: &Session,
     owners: &Owners,
-    here: &Here<'_>,
+    here: &RankProblem<'_>,
     owned: &mut BTreeMap<u32, Owned>,
 ) -> Result<()> {
     let marks = here.layout.duplicate()?;
@@ -199,7 +199,7 @@ fn reported(
 const KNOWN: u64 = u64::MAX;
 
 /// Where the dofs are that this rank asked for, in their order. Collective.
-fn told(session: &Session, owned: &BTreeMap<u32, Owned>) -> Vec<Holder> {
+fn report_holders(session: &Session, owned: &BTreeMap<u32, Owned>) -> Vec<Holder> {
     let mut outgoing = vec![Vec::new(); session.size()];
     for dof in owned.values() {
         for &rank in &dof.askers {

@@ -20,14 +20,14 @@ pub enum SetUp {
 
 /// Set-ups, and what they took over all ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Work {
+pub struct SetUpWork {
     /// Set-ups of everything, of other numbers, of other rows alone.
     pub set_ups: [usize; 3],
     /// Patterns that were analysed, subdomains that were factored, partitions into bodies that were looked for.
     pub spent: [f64; 3],
 }
 
-impl Work {
+impl SetUpWork {
     /// Does something of which some may be a set-up, and counts what it takes. `done` says what it was. Collective.
     ///
     /// # Errors

@@ -4,14 +4,14 @@ use std::cell::{Cell, OnceCell, Ref};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::facts::Facts;
 use super::krylov::check;
-use super::krylov::system::System;
+use super::krylov::system::DualSystem;
 use super::krylov::tally::Communication;
 use super::operators::dual::Dual;
+use super::set_up_summary::SetUpSummary;
 use super::settings::MethodSettings;
-use super::setup::Made;
-use super::subdomain::kept::Kept;
+use super::setup::SetUpResult;
+use super::subdomain::retained::RetainedFactors;
 use crate::substructures::{Problem, Row};
 use crate::Result;
 use cholesky::interior::Analysed;
@@ -25,9 +25,9 @@ pub struct LinearMethod {
     /// With options applied.
     pub(crate) settings: MethodSettings,
     /// The dual problem as the Krylov method works on it.
-    pub(crate) system: Rc<System>,
+    pub(crate) system: Rc<DualSystem>,
     pub(crate) ksp: Ksp,
-    pub(crate) facts: Facts,
+    pub(crate) facts: SetUpSummary,
     /// The largest displacement of the solutions so far: the scale of the problem where a later load vanishes.
     pub(crate) length: Cell<f64>,
     /// The largest ratio of coefficients inside a body.
@@ -69,7 +69,7 @@ impl LinearMethod {
     }
 
     /// The dual problem as the Krylov method works on it.
-    pub fn system(&self) -> &System {
+    pub fn system(&self) -> &DualSystem {
         &self.system
     }
 
@@ -102,7 +102,7 @@ impl LinearMethod {
         let kept = self.kept();
         let kept = if adapted { kept.patterns() } else { kept };
         let before = std::mem::replace(&mut self.problem.rows, rows);
-        match Made::new(&self.session, &self.problem, &self.settings, Some(&kept)) {
+        match SetUpResult::new(&self.session, &self.problem, &self.settings, Some(&kept)) {
             Ok(made) => {
                 self.take(made);
                 Ok(())
@@ -159,10 +159,10 @@ impl LinearMethod {
     }
 
     /// The subdomains as they are factored. The operators may have adaptive constraints that rows do not know.
-    fn kept(&self) -> Kept {
+    fn kept(&self) -> RetainedFactors {
         let dual = self.dual();
         let s = &dual.stiffness;
-        Kept::new(&s.jump, &s.locals, &self.analysed, s.primal.patterns())
+        RetainedFactors::new(&s.jump, &s.locals, &self.analysed, s.primal.patterns())
     }
 
     /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.

@@ -9,28 +9,28 @@ use mpi::traits::Communicator;
 
 use super::adaptive::{constrain::constrain, constraints};
 use super::cost::{choice, variation};
-use super::facts::Facts;
-use super::interface::sharing::Sharing;
+use super::interface::sharing::DofSharing;
 use super::interface::{entities, location};
 use super::jump::deluxe;
 use super::jump::operator::Jump;
 use super::jump::weights::weights;
 use super::krylov::shells;
-use super::krylov::system::System;
+use super::krylov::system::DualSystem;
 use super::lifting::correction::Lifting;
 use super::method::LinearMethod;
 use super::operators::dual::Dual;
 use super::operators::preconditioner::Preconditioner;
 use super::operators::stiffness::Stiffness;
 use super::primal::coarse::PrimalProblem;
-use super::primal::refinement::Refinement;
+use super::primal::refinement::PrimalRefinement;
 use super::primal::slack;
 use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
+use super::set_up_summary::SetUpSummary;
 use super::settings::{MethodSettings, PcType, Scaling};
 use super::subdomain::factor::{factor, no_factor, Factored};
-use super::subdomain::kept::Kept;
-use super::subdomain::scaled::Scaled;
+use super::subdomain::retained::RetainedFactors;
+use super::subdomain::scaled::ScaledSubdomain;
 use crate::feti::primal::refinement;
 use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
@@ -44,10 +44,10 @@ use petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
 const GROWTH: f64 = 1e12;
 
 /// The result of a set-up: all of a [`LinearMethod`] that follows from the rows.
-pub(super) struct Made {
-    system: Rc<System>,
+pub(super) struct SetUpResult {
+    system: Rc<DualSystem>,
     ksp: Ksp,
-    facts: Facts,
+    facts: SetUpSummary,
     varies: f64,
     analysed: Vec<Option<Arc<Analysed>>>,
 }
@@ -81,9 +81,9 @@ impl LinearMethod {
         session: &Session,
         problem: Problem,
         settings: MethodSettings,
-        kept: Option<&Kept>,
+        kept: Option<&RetainedFactors>,
     ) -> Result<LinearMethod> {
-        let made = Made::new(session, &problem, &settings, kept)?;
+        let made = SetUpResult::new(session, &problem, &settings, kept)?;
         Ok(LinearMethod {
             session: session.clone(),
             problem,
@@ -101,7 +101,7 @@ impl LinearMethod {
 
     /// Takes what a set-up for other rows has made in the place of what there is. The size of solutions, and the time
     /// that set-ups have taken, go on.
-    pub(super) fn take(&mut self, made: Made) {
+    pub(super) fn take(&mut self, made: SetUpResult) {
         let seconds = self.facts.setup_seconds;
         (self.system, self.ksp, self.facts) = (made.system, made.ksp, made.facts);
         (self.varies, self.analysed) = (made.varies, made.analysed);
@@ -110,7 +110,7 @@ impl LinearMethod {
     }
 }
 
-impl Made {
+impl SetUpResult {
     /// Factors, assembles the coarse problems and sets the Krylov method up; see [`LinearMethod::keeping`]. Collective.
     ///
     /// # Errors
@@ -119,15 +119,15 @@ impl Made {
         session: &Session,
         problem: &Problem,
         settings: &MethodSettings,
-        kept: Option<&Kept>,
-    ) -> Result<Made> {
+        kept: Option<&RetainedFactors>,
+    ) -> Result<SetUpResult> {
         let clock = Instant::now();
         let comm = session.comm();
         session.agree(entities::check(problem, settings.primal))?;
         session.agree(location::check(comm, problem))?;
         let scaling = settings.scaling.unwrap_or_else(|| choice::scaling(problem));
         let weights = weights(problem, scaling, settings.gamma);
-        let sharing = session.agree(Sharing::new(comm, problem, &weights, settings.primal))?;
+        let sharing = session.agree(DofSharing::new(comm, problem, &weights, settings.primal))?;
         drop(weights);
         let many = settings.coupled;
         let mut jump = Jump::coupling(comm, problem, &sharing, many); /*      B, B_D                 */
@@ -169,13 +169,13 @@ impl Made {
             NaturalCoarse::new(problem, &stiffness, &preconditioner, projector, &prefix)
         })?; /*                                                                 G, P                   */
         let dual = Dual::new(stiffness, preconditioner, natural)?;
-        let facts = Facts::new(comm, &dual, scaling);
-        let system = Rc::new(System::new(session, dual, settings.recycle)?);
+        let facts = SetUpSummary::new(comm, &dual, scaling);
+        let system = Rc::new(DualSystem::new(session, dual, settings.recycle)?);
         let ksp = krylov(session, &system, settings)?;
-        Ok(Made {
+        Ok(SetUpResult {
             system,
             ksp,
-            facts: Facts {
+            facts: SetUpSummary {
                 adaptive_constraints: added.constraints,
                 adaptive_seconds: added.seconds,
                 setup_seconds: clock.elapsed().as_secs_f64(),
@@ -191,10 +191,10 @@ impl Made {
 fn subdomains(
     session: &Session,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     jump: &mut Jump,
     team: &Team,
-    (kind, scaling, settings, kept): (PcType, Scaling, &MethodSettings, Option<&Kept>),
+    (kind, scaling, settings, kept): (PcType, Scaling, &MethodSettings, Option<&RetainedFactors>),
 ) -> Result<(Factored, Added)> {
     let comm = session.comm();
     let kept = kept.map_or(Vec::new(), |kept| kept.still(jump));
@@ -213,7 +213,9 @@ fn subdomains(
     }
     let adapting = Instant::now();
     let adaptive = settings.adaptive;
-    let added = constraints::find(comm, problem, sharing, jump, &locals, team, adaptive);
+    let added = constraints::find_adaptive_constraints(
+        comm, problem, sharing, jump, &locals, team, adaptive,
+    );
     if added.iter().any(|&n| n > 0) {
         let fails = |sub: &Subdomain, e| no_factor(problem, sub, e);
         let renewed = constrain(problem, jump, locals, team, fails);
@@ -230,17 +232,17 @@ fn subdomains(
 fn stiffness(
     session: &Session,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     jump: Jump,
-    locals: Vec<Scaled>,
-    (team, varies, settings, kept): (Team, f64, &MethodSettings, Option<&Kept>),
+    locals: Vec<ScaledSubdomain>,
+    (team, varies, settings, kept): (Team, f64, &MethodSettings, Option<&RetainedFactors>),
 ) -> Result<Stiffness> {
     let comm = session.comm();
     let mut space = PrimalSpace::new(comm, problem, sharing, &jump.averages, &locals);
     slack::check(session, problem, &space, &locals)?;
     let primal = clock::timed(Phase::PrimalSetup, || {
         let prefix = format!("{}coarse_", settings.prefix);
-        let known = kept.map_or(&[][..], Kept::coarse);
+        let known = kept.map_or(&[][..], RetainedFactors::coarse);
         let patterns = (known, settings.keeps_analyses);
         PrimalProblem::new(session, &mut space, &team, &prefix, patterns)
     })?;
@@ -248,7 +250,7 @@ fn stiffness(
     let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
     let mut stiffness = Stiffness::new(session, jump, locals, space, primal, dual_halo, team)?;
     if varies > refinement::PLAIN {
-        stiffness.refine(Refinement::new(problem, &stiffness.locals));
+        stiffness.refine(PrimalRefinement::new(problem, &stiffness.locals));
     }
     Ok(stiffness)
 }
@@ -280,7 +282,7 @@ fn count(list: &str) -> Option<usize> {
 }
 
 /// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in \[Lee\].
-fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> Result<Ksp> {
+fn krylov(session: &Session, system: &Rc<DualSystem>, settings: &MethodSettings) -> Result<Ksp> {
     let a = shells::operator(system)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_operators(&a, &a)?;

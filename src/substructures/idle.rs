@@ -99,7 +99,7 @@ pub(crate) fn check(comm: &SimpleCommunicator, local: &[Subdomain]) -> Result<()
 }
 
 /// Takes the displacement along idle motions away. Collective.
-pub fn settle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]) {
+pub fn remove_idle(comm: &SimpleCommunicator, local: &[Subdomain], u: &mut [Vec<f64>]) {
     let place: BTreeMap<usize, usize> = local
         .iter()
         .enumerate()

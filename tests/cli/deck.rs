@@ -2,13 +2,13 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use deck::{read_dat, Quantity, Table};
+use deck::{read_dat, DatQuantity, DatTable};
 use serde_json::Value;
 
 const DECK: &str = "../../crates/deck/tests/block.inp";
 
 /// The tables in a file.
-fn tables(path: &str) -> Vec<Table> {
+fn tables(path: &str) -> Vec<DatTable> {
     read_dat(&std::fs::read_to_string(path).expect(path))
 }
 
@@ -35,7 +35,7 @@ fn compare_along<const N: usize>(
     let ours = tables(&format!("{out}/{name}.dat"));
     let theirs = tables(&format!("../../crates/deck/tests/{name}.dat"));
     assert_eq!(ours.len(), theirs.len());
-    let moves = |t: &Table| t.quantity == Quantity::Displacement;
+    let moves = |t: &DatTable| t.quantity == DatQuantity::Displacement;
     let largest = |of: bool| {
         let tables = theirs.iter().filter(|t| moves(t) == of);
         let all = tables.flat_map(|t| &t.rows).flat_map(|r| r.vector);

@@ -11,7 +11,7 @@ use base::{ErrorKind, Result};
 use fetifeti::Settings;
 use mesh::{defects, gmsh, Extractor, Members, MeshFile};
 use petsc::{Options, Session};
-use scene::{need::Need, Cells, DeckScenes, Expr, NumberFormat, Scene, Tone, Variables};
+use scene::{need::Need, CellGrid, DeckScenes, Expr, NumberFormat, Scene, Tone, Variables};
 
 /// Elements of the largest scene that is made from what was read: a reader shows its mistakes on small ones.
 const LARGEST: f64 = 3e3;
@@ -161,12 +161,12 @@ pub fn coefficients(bytes: &[u8]) {
         Some(NumberFormat::Text),
     ];
     let cells = match kind % 3 {
-        2 => Cells::picture(
+        2 => CellGrid::picture(
             file,
             [1.0, 1e3],
             [Tone::Linear, Tone::Log][usize::from(kind / 3 % 2)],
         ),
-        _ => Cells::read(file, counts, format[usize::from(kind / 3 % 4)]),
+        _ => CellGrid::read(file, counts, format[usize::from(kind / 3 % 4)]),
     };
     if let Some(cells) = judge(cells, &name) {
         let _ = cells.range();

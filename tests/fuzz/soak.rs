@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 
 use base::ErrorKind::{Input, NotConverged, Unfit};
 use base::{Error, Result};
-use lab::assembled::layout::Layout;
-use lab::assembled::reference::{Precision, Reference};
+use lab::assembled::layout::UnknownLayout;
+use lab::assembled::reference::{Reference, ResidualPrecision};
 use lab::assembled::rows::Inequalities;
-use lab::baselines::{judge, solve_ours, Job, Task};
+use lab::baselines::{judge, solve_ours, BaselineTask, Job};
 use petsc::Session;
 use scene::{distribution, Scene};
 
@@ -114,7 +114,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
         rtol: RTOL,
         inner: 1e-2,
         again: false,
-        task: Task::Judge {
+        task: BaselineTask::Judge {
             solutions: Vec::new(),
         },
     };
@@ -150,12 +150,12 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
             if let wrong @ Fate::Wrong(_) = refused(&said, Path::new("soak_")) {
                 return Ok(wrong);
             }
-            let layout = Layout::new(scene);
+            let layout = UnknownLayout::new(scene);
             // Without a solution the direct solver may try sets for hours.
             if Inequalities::new(scene, &layout).len() > MANY {
                 return Ok(Fate::Undecided(format!("{said}; many rows")));
             }
-            let reference = Reference::new(session, scene, &layout, Precision::Twice, None);
+            let reference = Reference::new(session, scene, &layout, ResidualPrecision::Twice, None);
             let loud = e.is_not_converged();
             Ok(match reference {
                 Ok(r) if r.found.converged && loud => Fate::NotConverged(said),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::testing::with_session;
 use fetifeti::inside::equal::Likeness;
-use fetifeti::inside::{equal, Jump, Sharing};
+use fetifeti::inside::{equal, DofSharing, Jump};
 use fetifeti::settings::Primal;
 use fetifeti::Problem;
 use parallel::team::Team;
@@ -28,7 +28,7 @@ fn ring(physics: &str, change: impl Fn(&mut Problem)) -> Vec<Likeness> {
     with_session(move |session| {
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing =
-            Sharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
+            DofSharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
         let jump = Jump::new(session.comm(), &problem, &sharing);
         equal::representatives(&problem, &jump, &Team::new(2).expect("threads"))
     })

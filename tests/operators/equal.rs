@@ -2,7 +2,7 @@
 
 use crate::testing::with_session;
 use fetifeti::inside::equal::*;
-use fetifeti::inside::{Jump, Sharing};
+use fetifeti::inside::{DofSharing, Jump};
 use fetifeti::settings::Primal;
 use fetifeti::Problem;
 use parallel::team::Team;
@@ -16,7 +16,7 @@ fn a_regular_grid_has_one_matrix_per_kind_of_boundary() {
         let problem = scene.substructures(&|_| true).expect("substructures");
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing =
-            Sharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
+            DofSharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
         let jump = Jump::new(session.comm(), &problem, &sharing);
         let first = representatives(&problem, &jump, &Team::new(2).expect("threads"));
         let mut kinds: Vec<usize> = first.iter().map(|f| f.first).collect();
@@ -44,8 +44,8 @@ fn coefficients_of_subdomains_do_not_make_kinds_but_those_of_elements_do() {
         let mut problem = scene.substructures(&|_| true).expect("substructures");
         let count = |problem: &Problem| {
             let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
-            let sharing =
-                Sharing::new(session.comm(), problem, &weights, Primal::default()).expect("shared");
+            let sharing = DofSharing::new(session.comm(), problem, &weights, Primal::default())
+                .expect("shared");
             let jump = Jump::new(session.comm(), problem, &sharing);
             let first = representatives(problem, &jump, &Team::new(1).expect("threads"));
             let kinds = first

@@ -4,7 +4,7 @@ use crate::testing::with_session;
 use fetifeti::inside::equal::Likeness;
 use fetifeti::inside::forms::*;
 use fetifeti::inside::which::OperatorForm;
-use fetifeti::inside::{Jump, Sharing};
+use fetifeti::inside::{DofSharing, Jump};
 use fetifeti::settings::{Operators, Primal};
 use parallel::team::Team;
 use scene::Scene;
@@ -16,7 +16,7 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         let problem = scene.substructures(&|_| true).expect("substructures");
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing =
-            Sharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
+            DofSharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
         let jump = Jump::new(session.comm(), &problem, &sharing);
         let own = |first| Likeness {
             first,

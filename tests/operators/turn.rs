@@ -10,7 +10,7 @@ use cholesky::interior::Condenser;
 use cholesky::symbolic::Keep;
 use fetifeti::inside::turn::*;
 use fetifeti::inside::which::{Operator, OperatorForm};
-use fetifeti::inside::{LocalProblem, Scaled};
+use fetifeti::inside::{LocalProblem, ScaledSubdomain};
 use scene::Scene;
 
 const PHI: f64 = 3.7;
@@ -132,9 +132,9 @@ fn compare(dim: usize, q: Matrix, sample: &Sample, form: OperatorForm, pack: boo
     if pack {
         base.pack();
     }
-    let copy = Scaled::turned(Arc::new(base), PHI, Turn::new(dim, q));
+    let copy = ScaledSubdomain::turned(Arc::new(base), PHI, Turn::new(dim, q));
     let turned = sample.turned(dim, &q);
-    let own = Scaled::new(Arc::new(sample.local(&turned, form)), 1.0);
+    let own = ScaledSubdomain::new(Arc::new(sample.local(&turned, form)), 1.0);
     assert_eq!(copy.is_implicit(), own.is_implicit());
     assert_eq!(copy.gamma().interface, own.gamma().interface);
     let n_gamma = own.gamma().n_gamma();
@@ -182,13 +182,13 @@ fn compare(dim: usize, q: Matrix, sample: &Sample, form: OperatorForm, pack: boo
     // Loads in, solutions out.
     let f = random(turned.n(), 8);
     let (a, b) = (
-        Scaled::condense_many(&[&copy], &[&f]).remove(0),
-        Scaled::condense_many(&[&own], &[&f]).remove(0),
+        ScaledSubdomain::condense_many(&[&copy], &[&f]).remove(0),
+        ScaledSubdomain::condense_many(&[&own], &[&f]).remove(0),
     );
     close(&a.1, &b.1, "g");
     let u = random(n_gamma, 9);
-    let a = Scaled::recover_many(&[&copy], &[(&a.0, &u)]);
-    let b = Scaled::recover_many(&[&own], &[(&b.0, &u)]);
+    let a = ScaledSubdomain::recover_many(&[&copy], &[(&a.0, &u)]);
+    let b = ScaledSubdomain::recover_many(&[&own], &[(&b.0, &u)]);
     close(&a[0], &b[0], "u");
 }
 
@@ -219,7 +219,7 @@ fn what_a_turned_copy_holds_itself_does_not_show() {
         sample.averages.clear();
         compare(dim, q, &sample, OperatorForm::Explicit, false);
         let base = Arc::new(sample.local(&sample.k, OperatorForm::Explicit));
-        let copy = Scaled::turned(base, PHI, Turn::new(dim, q));
+        let copy = ScaledSubdomain::turned(base, PHI, Turn::new(dim, q));
         assert!(!copy.gamma().fixing.is_empty());
         // u = T S u + Ψ p(u), with p(u) the values of the fixing dofs.
         let u = random(copy.gamma().n_gamma(), 4);

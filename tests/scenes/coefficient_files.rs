@@ -5,7 +5,7 @@ use cells::{bytes32, bytes64, counting, elements, paint, rho, Grid};
 use mesh::BoxMesh;
 use mpi::Scratch;
 use png::{BitDepth, ColorType};
-use scene::{BodySpec, Cells, Field, Load, Scene, SceneSpec, Tone};
+use scene::{BodySpec, CellGrid, Field, Load, Scene, SceneSpec, Tone};
 use std::path::Path;
 
 #[test]
@@ -181,7 +181,7 @@ fn pictures_in_all_their_depths() {
 #[test]
 fn a_program_may_hand_over_cells() {
     let mesh = BoxMesh::plane([0.0; 2], [1.0; 2], [4, 2], [2, 1]);
-    let cells = |values: Vec<f64>| Cells::new("permeability", [4, 2, 1], values);
+    let cells = |values: Vec<f64>| CellGrid::new("permeability", [4, 2, 1], values);
     let with = |rho: Field, load: Field| {
         let mut body = BodySpec::new("rock", mesh);
         body.rho = rho;
@@ -209,6 +209,6 @@ fn a_program_may_hand_over_cells() {
         with(one(), good).unwrap_err(),
         "body `rock`: permeability gives a load, a spring or a side where only coefficients were expected"
     );
-    let missing = Cells::picture(Path::new("no/such.png"), [1.0, 2.0], Tone::Linear);
+    let missing = CellGrid::picture(Path::new("no/such.png"), [1.0, 2.0], Tone::Linear);
     assert!(missing.unwrap_err().to_string().contains("no/such.png"));
 }

@@ -1,6 +1,8 @@
 //! All mistakes in contacts, obstacles and load steps, and the one sentence for each.
 
-use scene::{ContactSpec, Extent, ObstacleSpec, Pair, Profile, Ramp, Scene, SceneSpec, StepsSpec};
+use scene::{
+    ContactSpec, Extent, ObstacleSpec, PairSelector, Profile, Ramp, Scene, SceneSpec, StepsSpec,
+};
 
 /// A body on five lines.
 fn body(name: &str, origin: &str, more: &str) -> String {
@@ -333,7 +335,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
     let mut contact = spec();
     contact.contacts.push(ContactSpec {
         sides: None,
-        pair: Pair::Named("b0_0".into(), "b1_0".into()),
+        pair: PairSelector::Named("b0_0".into(), "b1_0".into()),
         extent: Extent::All,
         gap: Profile::Table(Vec::new()),
         distance: None,

@@ -148,7 +148,7 @@ fn rows_at(point: [f64; 2], entries: &str) -> usize {
     let text =
         format!("[grid]\nbodies = 2\nsize = 2\nelements = 2\ndirichlet = [\"left\"]\n{entries}");
     let scene = Scene::parse("t.toml", &text).unwrap();
-    let at = |p: &&scene::Point| {
+    let at = |p: &&scene::InterfacePoint| {
         let first = p.members[0];
         let [x, y, _] = scene.bodies[first.body].mesh().position(first.node);
         [x, y] == point

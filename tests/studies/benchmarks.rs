@@ -3,7 +3,7 @@
 use crate::support::keys::{self, Keys};
 use crate::support::sample::sample;
 use crate::support::{mpi, program};
-use lab::study::benchmarks::{BenchmarksReport, CaseReport};
+use lab::study::benchmarks::{BenchmarkReport, BenchmarksReport};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -23,7 +23,7 @@ const KEYS: Keys = &[
 ];
 
 /// The small form of a case; its tolerances are kept.
-fn quick(case: &str, ranks: usize, dir: &Scratch) -> CaseReport {
+fn quick(case: &str, ranks: usize, dir: &Scratch) -> BenchmarkReport {
     let file = dir.path(&format!("{case}-{ranks}.json"));
     let out = dir.path(&format!("{case}-{ranks}"));
     let args = [
@@ -51,7 +51,7 @@ fn quick(case: &str, ranks: usize, dir: &Scratch) -> CaseReport {
 }
 
 /// The errors of a quantity, mesh by mesh, of all series.
-fn errors(case: &CaseReport, quantity: &str) -> Vec<f64> {
+fn errors(case: &BenchmarkReport, quantity: &str) -> Vec<f64> {
     let values = case.meshes().flat_map(|m| &m.values);
     let found: Vec<f64> = values
         .filter(|v| v.quantity == quantity)

@@ -3,7 +3,7 @@
 use crate::support::keys::{self, Keys};
 use crate::support::sample::of;
 use crate::support::{mpi, program};
-use lab::study::hard_cases::{trackers, HardCasesReport, Record, Verdict};
+use lab::study::hard_cases::{trackers, HardCaseOutcome, HardCasesReport, Record};
 use mpi::Scratch;
 use program::run_fetifeti;
 use std::sync::OnceLock;
@@ -48,14 +48,17 @@ fn nothing_is_wrong() {
     };
     for case in &report.cases {
         println!("{}: {:?} {:?}", case.case, case.verdict, case.error_max);
-        assert_ne!(case.verdict, Verdict::Wrong, "{}", case.case);
+        assert_ne!(case.verdict, HardCaseOutcome::Wrong, "{}", case.case);
         // The direct solution is certified; without one there would be nothing to compare with. Where the assembled
         // problem has no form for one, tests/ranks/mortar.rs has the direct solution.
         let certified = case.reference.is_some_and(|r| r < 1e-9) || case.undecided.is_some();
         assert_eq!(certified, case.case != "flies-away", "{}", case.case);
         // Where the solver fails, it says why; where it claims a solution, it is right.
-        assert_eq!(case.message.is_some(), case.verdict != Verdict::Solved);
-        if case.verdict == Verdict::Solved && case.undecided.is_none() {
+        assert_eq!(
+            case.message.is_some(),
+            case.verdict != HardCaseOutcome::Solved
+        );
+        if case.verdict == HardCaseOutcome::Solved && case.undecided.is_none() {
             assert!(case.error_max.is_some_and(|e| e < report.limit));
             // Without a force any rows may hold among those that touch.
             if case.force.is_none_or(|[_, known]| known != 0.0) {
@@ -63,7 +66,7 @@ fn nothing_is_wrong() {
             }
         }
     }
-    assert_eq!(find("flies-away").verdict, Verdict::Refused);
+    assert_eq!(find("flies-away").verdict, HardCaseOutcome::Refused);
     assert_eq!(find("one-node").active[0], Some(1));
     assert_eq!(find("no-contact").active[0], Some(0));
     for name in [
@@ -73,12 +76,12 @@ fn nothing_is_wrong() {
         "stiff-on-soft",
         "many-subdomains",
     ] {
-        assert_eq!(find(name).verdict, Verdict::Solved, "{name}");
+        assert_eq!(find(name).verdict, HardCaseOutcome::Solved, "{name}");
     }
     // What others report is solved, and forces that are known beforehand are found.
     for known in trackers() {
         let case = find(known.name);
-        assert_eq!(case.verdict, Verdict::Solved, "{}", case.case);
+        assert_eq!(case.verdict, HardCaseOutcome::Solved, "{}", case.case);
         let force = case.force.map(|[found, value]| (found - value).abs());
         assert_eq!(force.is_some(), known.force.is_some(), "{}", case.case);
         if let (Some(away), Some(force)) = (force, known.force) {
@@ -88,11 +91,14 @@ fn nothing_is_wrong() {
     let touching = find("4c-1585-moved");
     assert_eq!((touching.active[0], touching.iterations), (Some(25), 0));
     // Most cases are solved: a solver that always gives up would be useless.
-    let solved = report.cases.iter().filter(|c| c.verdict == Verdict::Solved);
+    let solved = report
+        .cases
+        .iter()
+        .filter(|c| c.verdict == HardCaseOutcome::Solved);
     assert!(solved.count() >= 29);
     for name in ["wall", "wall-jumps-1e4", "wall-jumps-1e6", "wall-elastic"] {
         let case = find(name);
-        assert_eq!(case.verdict, Verdict::Solved, "{name}");
+        assert_eq!(case.verdict, HardCaseOutcome::Solved, "{name}");
         // The problem is one of contact: some rows hold, others do not.
         assert!(case.active[1].is_some_and(|n| n > 50), "{name}");
         assert!(case.active[1] < Some(case.multipliers), "{name}");
@@ -120,7 +126,7 @@ fn walls_have_direct_solutions() {
                 };
                 let record = one(session, &case, 0).expect("it runs");
                 println!("{what}: {record:?}");
-                assert_eq!(record.verdict, Verdict::Solved, "{what}");
+                assert_eq!(record.verdict, HardCaseOutcome::Solved, "{what}");
                 assert!(record.reference.is_some_and(|r| r < 1e-9), "{what}");
                 // Energies differ by half of its square.
                 assert!(record.error_energy.is_some_and(|e| e < 1e-4), "{what}");
@@ -177,7 +183,7 @@ fn a_wrong_answer_is_seen() {
         let record = one(session, &case, 0).expect("it runs");
         (record.verdict, record.error_energy)
     });
-    assert_eq!(verdict.0, Verdict::Wrong, "{verdict:?}");
+    assert_eq!(verdict.0, HardCaseOutcome::Wrong, "{verdict:?}");
 }
 
 /// A force that is one per cent away from what is known: the study detects it.
@@ -192,7 +198,7 @@ fn a_wrong_force_is_seen() {
             };
             known.value += 0.01 * known.value.abs() + 2.0 * known.within;
             let record = one(session, &case, 0).expect("it runs");
-            assert_eq!(record.verdict, Verdict::Wrong, "{}", case.name);
+            assert_eq!(record.verdict, HardCaseOutcome::Wrong, "{}", case.name);
         }
     });
 }

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use lab::study::hertz::{CaseReport, HertzReport};
+use lab::study::hertz::{HertzProblem, HertzReport};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -44,7 +44,7 @@ fn half_width_and_peak_agree_with_the_theory() {
                 "{} {}: {}",
                 case.case,
                 mesh.elements,
-                CaseReport::error(mesh)
+                HertzProblem::error(mesh)
             );
             assert_eq!(mesh.active, other.active);
             let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-5;

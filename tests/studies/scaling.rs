@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use lab::study::scaling::{Point, Problem, ScalingReport, Series, RANKS};
+use lab::study::scaling::{ScalingPoint, ScalingProblem, ScalingReport, ScalingSeries, RANKS};
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 
@@ -25,7 +25,11 @@ const KEYS: Keys = &[
     ("predictions[].limits[]", "from phase"),
 ];
 
-fn runs(report: &ScalingReport, series: Series, problem: Problem) -> Vec<&Point> {
+fn runs(
+    report: &ScalingReport,
+    series: ScalingSeries,
+    problem: ScalingProblem,
+) -> Vec<&ScalingPoint> {
     let of = report.points.iter();
     of.filter(|p| p.series == series && p.problem == problem)
         .collect()
@@ -82,7 +86,7 @@ fn sends(report: &ScalingReport) {
     }
     // The body in the middle of 3 × 3 sends λ and the jump of λ, around F and around M⁻¹, to each of at most eight
     // neighbours.
-    let middle = runs(report, Series::Neighbours, Problem::Tied)[0];
+    let middle = runs(report, ScalingSeries::Neighbours, ScalingProblem::Tied)[0];
     let most = middle.communication.messages.max;
     assert!((8.0..=32.0).contains(&most), "{most}");
     assert_eq!(
@@ -93,7 +97,7 @@ fn sends(report: &ScalingReport) {
 
 /// The number of iterations is bounded as bodies are added, and does not depend on ranks.
 fn grows(report: &ScalingReport) {
-    let growing = runs(report, Series::Bodies, Problem::Tied);
+    let growing = runs(report, ScalingSeries::Bodies, ScalingProblem::Tied);
     assert_eq!(growing.iter().map(|p| p.subdomains).max(), Some(256));
     for p in &growing {
         assert!(p.iterations > 3 && p.iterations < 30, "{p:?}");
@@ -106,8 +110,8 @@ fn grows(report: &ScalingReport) {
     // From 64 to 256 bodies.
     let largest = one(1);
     assert!(largest[2] <= largest[1] + 2, "{largest:?}");
-    for problem in [Problem::Tied, Problem::Contact] {
-        let strong = runs(report, Series::Strong, problem);
+    for problem in [ScalingProblem::Tied, ScalingProblem::Contact] {
+        let strong = runs(report, ScalingSeries::Strong, problem);
         assert_eq!(
             strong.iter().map(|p| p.ranks).collect::<Vec<_>>(),
             [1, 2, 4]
@@ -140,7 +144,7 @@ fn fits(report: &ScalingReport) {
         assert!(law.median_deviation <= law.largest_deviation);
     }
     for p in &report.points {
-        assert_eq!(p.fitted, p.ranks == 1 && p.problem == Problem::Tied);
+        assert_eq!(p.fitted, p.ranks == 1 && p.problem == ScalingProblem::Tied);
         assert!(positive(p.setup.sum()) && positive(p.iteration.sum()));
         assert!(positive(p.model.setup.sum()) && positive(p.model.iteration.sum()));
         let off = p.model.iteration.sum() / p.iteration.sum() - 1.0;

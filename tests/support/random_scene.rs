@@ -9,8 +9,8 @@ use super::rng::Rng;
 use elements::q1::Quadrature;
 use mesh::BoxMesh;
 use scene::{
-    BodySpec, By, ByDefault, ContactSpec, Expr, Extent, Field, Load, ObstacleSpec, Pair, Profile,
-    Region, Scene, SceneSpec, TieSpec,
+    BodySpec, By, ByDefault, ContactSpec, Expr, Extent, Field, Load, ObstacleSpec, PairSelector,
+    Profile, Region, Scene, SceneSpec, TieSpec,
 };
 
 /// A scene and its outcome.
@@ -143,7 +143,7 @@ pub fn spec(seed: u64) -> SceneSpec {
     if rng.one_in(12) {
         spec.contacts.push(ContactSpec {
             sides: None,
-            pair: Pair::All,
+            pair: PairSelector::All,
             extent: Extent::All,
             gap: Profile::constant(number(rng, 0.0, 0.1)),
             distance: None,
@@ -290,7 +290,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
     let tie = |spec: &mut SceneSpec, extent: Extent| {
         let [a, b] = names.clone();
         spec.ties.push(TieSpec {
-            pair: Pair::Named(a, b),
+            pair: PairSelector::Named(a, b),
             sides: None,
             extent,
             multipliers: None,
@@ -304,9 +304,9 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
         spec.contacts.push(ContactSpec {
             sides: None,
             pair: if turned {
-                Pair::Named(b, a)
+                PairSelector::Named(b, a)
             } else {
-                Pair::Named(a, b)
+                PairSelector::Named(a, b)
             },
             extent,
             gap: gap(rng, tame),

@@ -9,7 +9,7 @@ const FREE: u32 = u32::MAX;
 /// Marks the cover on both sides; `edges` has the right neighbours of each left vertex. The cover is the left side
 /// where every left vertex is matched.
 pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
-    let mut matching = Matching {
+    let mut matching = BipartiteMatching {
         edges,
         of_left: vec![FREE; edges.len()],
         of_right: vec![FREE; n_right],
@@ -31,7 +31,7 @@ pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
     matching.cover()
 }
 
-struct Matching<'a> {
+struct BipartiteMatching<'a> {
     edges: &'a [Vec<u32>],
     of_left: Vec<u32>,
     of_right: Vec<u32>,
@@ -40,7 +40,7 @@ struct Matching<'a> {
     round: u32,
 }
 
-impl Matching<'_> {
+impl BipartiteMatching<'_> {
     fn pair(&mut self, l: usize, r: u32) {
         self.of_left[l] = r;
         self.of_right[r as usize] = l as u32;

@@ -40,7 +40,7 @@ fn way_of(front: &Front) -> f64 {
 
 /// Who has a front.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Share {
+pub struct FrontOwner {
     /// The rank that eliminates it.
     pub rank: u32,
     /// Whether it is above the subtrees that are dealt out.
@@ -74,7 +74,7 @@ fn home_of_subtrees(fronts: &[Front], homes: &[u32]) -> Vec<u32> {
 /// Deals out the fronts: of the cuts through the tree into at least as many subtrees as there are ranks, where there
 /// are so many, the one with which a factorisation and its solves are done first. A subtree goes to the rank where most
 /// of its rows are at home, by `homes`, unless that rank has more than its share already.
-pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
+pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<FrontOwner> {
     let home = home_of_subtrees(fronts, homes);
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); fronts.len()];
     let mut work: Vec<f64> = fronts.iter().map(work_of).collect();
@@ -99,7 +99,7 @@ pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
     let mut above: Vec<usize> = Vec::new();
     // Subtrees that are single fronts.
     let mut single: Vec<(Flops, Reverse<usize>)> = Vec::new();
-    let mut best: Option<Cut> = None;
+    let mut best: Option<TreeCut> = None;
     let mut next = 0;
     loop {
         let is_single = |f: &(Flops, Reverse<usize>)| children[f.1 .0].is_empty();
@@ -118,7 +118,7 @@ pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
             let end = schedule.run(&dealt, &work, &mut above);
             if best.as_ref().is_none_or(|b| end < SHORTER * b.end) {
                 let above = above.clone();
-                best = Some(Cut { end, dealt, above });
+                best = Some(TreeCut { end, dealt, above });
             }
         }
         let Some((_, Reverse(f))) = subtrees.pop().filter(|_| divisible) else {
@@ -130,8 +130,8 @@ pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
     let best = best.expect("the last cut is tried");
     let (dealt, mut above) = (best.dealt, best.above);
     schedule.run(&dealt, &work, &mut above);
-    let mut shares: Vec<Option<Share>> = vec![None; fronts.len()];
-    let share = |rank: u32, above: bool| Some(Share { rank, above });
+    let mut shares: Vec<Option<FrontOwner>> = vec![None; fronts.len()];
+    let share = |rank: u32, above: bool| Some(FrontOwner { rank, above });
     dealt
         .iter()
         .for_each(|&(f, rank)| shares[f] = share(rank, false));
@@ -149,7 +149,7 @@ pub fn deal(fronts: &[Front], ranks: usize, homes: &[u32]) -> Vec<Share> {
 }
 
 /// A cut through the tree.
-struct Cut {
+struct TreeCut {
     /// When all is done, in operations.
     end: f64,
     /// The subtrees below it with their ranks, and the fronts above it.

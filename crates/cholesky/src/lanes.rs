@@ -6,7 +6,7 @@
 
 use super::multifrontal::PartialCholesky;
 use super::panel::LOT;
-use super::sweep::Entry;
+use super::sweep::SweepValue;
 
 /// Number of right-hand sides that are solved together.
 pub const LANES: usize = 8;
@@ -74,7 +74,7 @@ impl PartialCholesky {
     }
 }
 
-impl Entry for Lane {
+impl SweepValue for Lane {
     fn add(&mut self, other: &Lane) {
         self.iter_mut().zip(other).for_each(|(y, w)| *y += w);
     }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::front::{factor_front, factor_semidefinite};
 use super::panel;
-use super::strips::Update;
+use super::strips::SchurUpdate;
 use super::symbolic::{Symbolic, ABSENT};
 use crate::strips;
 use base::linalg::csr::Csr;
@@ -141,7 +141,7 @@ pub(super) struct Elimination<'a> {
     /// S so far.
     s: Dense,
     /// Updates of fronts for their parents: lower triangles of the rows below, until the parents take them.
-    updates: Vec<Update>,
+    updates: Vec<SchurUpdate>,
     /// Memory of updates that parents have taken.
     spare: Vec<Vec<f64>>,
     children: Vec<Vec<usize>>,
@@ -162,7 +162,7 @@ impl<'a> Elimination<'a> {
             kept,
             panels: Vec::with_capacity(kept.storage),
             s: schur_start(k, sym),
-            updates: sym.fronts.iter().map(|_| Update::default()).collect(),
+            updates: sym.fronts.iter().map(|_| SchurUpdate::default()).collect(),
             spare: Vec::new(),
             children: vec![Vec::new(); sym.fronts.len()],
             place: vec![0u32; k.n()],
@@ -172,7 +172,7 @@ impl<'a> Elimination<'a> {
     }
 
     /// Takes the update that front `f` leaves to its parent: the lower triangle, column by column.
-    pub fn take(&mut self, f: usize) -> Vec<f64> {
+    pub fn take_schur_complement(&mut self, f: usize) -> Vec<f64> {
         let front = &self.sym.fronts[f];
         let siblings = &mut self.children[front.parent.expect("there is a parent")];
         siblings.retain(|&c| c != f);
@@ -183,10 +183,10 @@ impl<'a> Elimination<'a> {
     }
 
     /// Gives front `f` this update, a lower triangle column by column, as if it had been eliminated here.
-    pub fn give(&mut self, f: usize, update: Vec<f64>) {
+    pub fn put_schur_complement(&mut self, f: usize, update: Vec<f64>) {
         let parent = self.sym.fronts[f].parent;
         self.children[parent.expect("there is a parent")].push(f);
-        self.updates[f] = Update::Packed(update);
+        self.updates[f] = SchurUpdate::Packed(update);
     }
 
     /// Eliminates front `f`, the next one in `kept`; its children have been. `pause` is called now and then if the
@@ -267,11 +267,11 @@ impl<'a> Elimination<'a> {
         panel::append(&panel.data, size, width, into.size(), &mut self.panels);
         match front.parent {
             Some(t) => {
-                self.updates[f] = Update::Strips(update);
+                self.updates[f] = SchurUpdate::Strips(update);
                 self.children[t].push(f);
             }
             None => {
-                let update = Update::Strips(update);
+                let update = SchurUpdate::Strips(update);
                 add_to_s(&mut self.s, &front.into_parent, &update);
                 self.spare.push(update.into_memory());
             }
@@ -312,7 +312,7 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
 }
 
 /// Adds the columns of a child's update that are pivots of its parent.
-fn add_to_panel(panel: &mut Dense, map: &[u32], child: &Update) {
+fn add_to_panel(panel: &mut Dense, map: &[u32], child: &SchurUpdate) {
     let inside = map.partition_point(|&i| (i as usize) < panel.cols);
     let runs = runs(map);
     for (j, &into) in map[..inside].iter().enumerate() {
@@ -322,7 +322,12 @@ fn add_to_panel(panel: &mut Dense, map: &[u32], child: &Update) {
 }
 
 /// Adds the other columns, to the update of a parent with `width` pivots and `order` rows below them.
-fn add_to_update(update: &mut [f64], (width, order): (usize, usize), map: &[u32], child: &Update) {
+fn add_to_update(
+    update: &mut [f64],
+    (width, order): (usize, usize),
+    map: &[u32],
+    child: &SchurUpdate,
+) {
     let inside = map.partition_point(|&i| (i as usize) < width);
     let runs = runs(map);
     for (j, &into) in map.iter().enumerate().skip(inside) {
@@ -334,7 +339,12 @@ fn add_to_update(update: &mut [f64], (width, order): (usize, usize), map: &[u32]
 }
 
 /// Adds column `j` of a child, from its diagonal entry down, to a column whose first row is row `above` of the parent.
-fn add_column(column: &mut [f64], above: usize, runs: &[Rows], (j, of_child): (usize, &[f64])) {
+fn add_column(
+    column: &mut [f64],
+    above: usize,
+    runs: &[ChildRows],
+    (j, of_child): (usize, &[f64]),
+) {
     let first = runs.partition_point(|run| run.end <= j);
     for run in &runs[first..] {
         let start = run.start.max(j);
@@ -346,7 +356,7 @@ fn add_column(column: &mut [f64], above: usize, runs: &[Rows], (j, of_child): (u
 }
 
 /// Rows of a child that stand one after the other in its parent, too.
-struct Rows {
+struct ChildRows {
     start: usize,
     end: usize,
     /// Where the first one stands.
@@ -354,12 +364,12 @@ struct Rows {
 }
 
 /// The places in the parent, in such parts.
-fn runs(map: &[u32]) -> Vec<Rows> {
+fn runs(map: &[u32]) -> Vec<ChildRows> {
     let mut start = 0;
     let runs = map.chunk_by(|a, b| *b == a + 1).map(|run| {
         let (from, to) = (start, run[0] as usize);
         start += run.len();
-        Rows {
+        ChildRows {
             start: from,
             end: start,
             to,
@@ -369,7 +379,7 @@ fn runs(map: &[u32]) -> Vec<Rows> {
 }
 
 /// Adds an update to S.
-fn add_to_s(s: &mut Dense, map: &[u32], update: &Update) {
+fn add_to_s(s: &mut Dense, map: &[u32], update: &SchurUpdate) {
     for (j, &into) in map.iter().enumerate() {
         let column = s.col_mut(into as usize);
         for (&i, &v) in map[j..].iter().zip(update.column(map.len(), j)) {

@@ -4,16 +4,16 @@
 //! knows of others what it exchanges with them: its memory grows with its part of the bodies, not with all of them.
 
 use super::symbolic::{Front, Symbolic};
-use super::team::{Run, Team};
+use super::team::{FactorTeam, FrontChain};
 use base::linalg::sorted::distinct;
 
-impl Team {
+impl FactorTeam {
     /// This team with numbers for the dofs in `known` alone, in their order, and with the own fronts alone. `known`
     /// increases, and has all dofs in the rows of the own fronts.
     ///
     /// # Panics
     /// If it has not.
-    pub fn narrowed(self, known: &[u32]) -> Team {
+    pub fn narrowed(self, known: &[u32]) -> FactorTeam {
         let old = &*self.symbolic;
         let rows = distinct(self.own_rows.iter().chain(&self.ghost_rows).copied());
         let row = |p: u32| rows.binary_search(&p).expect("a row of an own front") as u32;
@@ -59,12 +59,12 @@ impl Team {
         let interior = rows.iter().map(dof).collect();
         let fronts = fronts.collect();
         let symbolic = Symbolic::part(interior, known.len(), fronts, old.storage);
-        let run = |run: &Run| Run {
+        let run = |run: &FrontChain| FrontChain {
             children: run.children.iter().map(|c| (of(c.0), c.1)).collect(),
             fronts: run.fronts.clone(),
             parent: run.parent,
         };
-        Team {
+        FactorTeam {
             own: self.own.iter().map(|&f| of(f)).collect(),
             runs: self.runs.iter().map(run).collect(),
             places: known.iter().map(|&d| self.places[d as usize]).collect(),

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use mpi::traits::Communicator;
 
 use super::multifrontal::{Elimination, PartialCholesky, Pivots};
-use super::team::Team;
+use super::team::FactorTeam;
 use base::linalg::csr::Csr;
 use bytemuck::{Pod, Zeroable};
 use parallel::clock::{self, Phase};
@@ -19,7 +19,7 @@ use parallel::post::{posting, received, received_any, Address};
 
 /// The factor of a semidefinite matrix, shared by a team.
 pub struct SharedCholesky {
-    team: Rc<Team>,
+    team: Rc<FactorTeam>,
     /// The panels that this rank has.
     factor: PartialCholesky,
     /// A number for every row of the pattern; those of this rank and its ghosts are in use.
@@ -39,7 +39,7 @@ impl SharedCholesky {
     /// The factor of `k`, of which a rank needs the rows that it has, and the dofs that it leaves out
     /// ([`semidefinite`](PartialCholesky::semidefinite)), by their numbers among those of all ranks, which increase.
     /// Collective.
-    pub fn semidefinite(k: &Csr, team: Rc<Team>, least: f64) -> (SharedCholesky, Vec<u32>) {
+    pub fn semidefinite(k: &Csr, team: Rc<FactorTeam>, least: f64) -> (SharedCholesky, Vec<u32>) {
         let (comm, symbolic) = (&team.comm, &*team.symbolic);
         let rows_below = |f: usize| symbolic.fronts[f].below.len();
         let mut elimination = Elimination::new(k, symbolic, symbolic);
@@ -49,7 +49,7 @@ impl SharedCholesky {
             for run in &team.runs {
                 for &(child, from) in &run.children {
                     let n = rows_below(child);
-                    elimination.give(child, received(comm, from, n * (n + 1) / 2));
+                    elimination.put_schur_complement(child, received(comm, from, n * (n + 1) / 2));
                 }
                 for &f in &team.own[run.fronts.clone()] {
                     let done = elimination.front(f, &mut pivots, &mut || post.progress());
@@ -57,7 +57,7 @@ impl SharedCholesky {
                     post.progress();
                 }
                 if let Some(to) = run.parent {
-                    post.send(to, elimination.take(team.last(run)));
+                    post.send(to, elimination.take_schur_complement(team.last(run)));
                 }
             }
         });
@@ -96,7 +96,7 @@ impl SharedCholesky {
     }
 
     /// x ← A⁺ b for a vector b that no rank has whole: the sum over the ranks of what they have here, of the rows of
-    /// this rank and of its ghosts ([`Team::dofs`]). On return x has the solution there. Collective.
+    /// this rank and of its ghosts ([`FactorTeam::dofs`]). On return x has the solution there. Collective.
     pub fn solve_shares(&self, x: &mut [f64]) {
         let team = &*self.team;
         let mut y = self.work.borrow_mut();
@@ -163,7 +163,7 @@ impl SharedCholesky {
     }
 
     /// The ranks that share it, and who of them has what.
-    pub fn team(&self) -> &Team {
+    pub fn team(&self) -> &FactorTeam {
         &self.team
     }
 

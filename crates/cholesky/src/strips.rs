@@ -70,25 +70,25 @@ fn column(order: usize, j: usize) -> Range<usize> {
 
 /// An update that waits for the parent of its front. Lists may be longer than what they have.
 #[derive(Debug)]
-pub enum Update {
+pub enum SchurUpdate {
     /// As its front has left it.
     Strips(Vec<f64>),
     /// As it goes in messages: column after column, each from its diagonal entry down.
     Packed(Vec<f64>),
 }
 
-impl Default for Update {
-    fn default() -> Update {
-        Update::Strips(Vec::new())
+impl Default for SchurUpdate {
+    fn default() -> SchurUpdate {
+        SchurUpdate::Strips(Vec::new())
     }
 }
 
-impl Update {
+impl SchurUpdate {
     /// Column `j`, from its diagonal entry down.
     pub fn column(&self, order: usize, j: usize) -> &[f64] {
         match self {
-            Update::Strips(all) => &all[column(order, j)],
-            Update::Packed(all) => {
+            SchurUpdate::Strips(all) => &all[column(order, j)],
+            SchurUpdate::Packed(all) => {
                 let start = j * order - j * j.saturating_sub(1) / 2;
                 &all[start..start + order - j]
             }
@@ -104,7 +104,7 @@ impl Update {
 
     /// Its memory.
     pub fn into_memory(self) -> Vec<f64> {
-        let (Update::Strips(all) | Update::Packed(all)) = self;
+        let (SchurUpdate::Strips(all) | SchurUpdate::Packed(all)) = self;
         all
     }
 }

@@ -2,7 +2,7 @@
 
 use super::multifrontal::PartialCholesky;
 use super::panel::LOT;
-use super::sweep::Entry;
+use super::sweep::SweepValue;
 
 impl PartialCholesky {
     /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
@@ -41,7 +41,7 @@ impl PartialCholesky {
     }
 }
 
-impl Entry for f64 {
+impl SweepValue for f64 {
     fn add(&mut self, other: &f64) {
         *self += other;
     }
@@ -61,7 +61,7 @@ impl Entry for f64 {
         let below = &below[..N * rest.len()];
         let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact_mut(LOT));
         for (l, y) in (&mut lots).zip(&mut rows) {
-            let y: &mut Lot = y.try_into().expect("as long");
+            let y: &mut EntryChunk = y.try_into().expect("as long");
             let mut sum = *y;
             for (k, x) in minus.iter().enumerate() {
                 let l = lot(l, k);
@@ -121,10 +121,10 @@ fn reciprocals<const N: usize>(square: &[f64]) -> [f64; N] {
 }
 
 /// A fixed number of entries that are processed together.
-type Lot = [f64; LOT];
+type EntryChunk = [f64; LOT];
 
 /// Lot `k` of `values`.
-fn lot(values: &[f64], k: usize) -> &Lot {
+fn lot(values: &[f64], k: usize) -> &EntryChunk {
     values[k * LOT..][..LOT].try_into().expect("as long")
 }
 

@@ -10,7 +10,7 @@ use super::symbolic::Front;
 use crate::panel;
 
 /// The values of one unknown: a number, or one for each of several right-hand sides.
-pub(super) trait Entry: Copy + Default {
+pub(super) trait SweepValue: Copy + Default {
     /// Adds another.
     fn add(&mut self, other: &Self);
 
@@ -24,12 +24,12 @@ pub(super) trait Entry: Copy + Default {
 
 impl PartialCholesky {
     /// y ← [L_II⁻¹ y_I; y_Γ − L_ΓI L_II⁻¹ y_I] in the order of elimination.
-    pub(super) fn lower<E: Entry>(&self, y: &mut [E]) {
+    pub(super) fn lower<E: SweepValue>(&self, y: &mut [E]) {
         self.lower_of(self.symbolic.fronts.iter(), y);
     }
 
     /// The part of [`lower`](Self::lower) that these fronts do, which come in the order of elimination.
-    pub(super) fn lower_of<'a, E: Entry>(
+    pub(super) fn lower_of<'a, E: SweepValue>(
         &self,
         fronts: impl Iterator<Item = &'a Front>,
         y: &mut [E],
@@ -50,12 +50,12 @@ impl PartialCholesky {
     }
 
     /// y ← [L_II⁻ᵀ (y_I − L_ΓIᵀ y_Γ); y_Γ] in the order of elimination.
-    pub(super) fn upper<E: Entry>(&self, y: &mut [E]) {
+    pub(super) fn upper<E: SweepValue>(&self, y: &mut [E]) {
         self.upper_of(self.symbolic.fronts.iter().rev(), y);
     }
 
     /// The part of [`upper`](Self::upper) that these fronts do, which come in the reverse order of elimination.
-    pub(super) fn upper_of<'a, E: Entry>(
+    pub(super) fn upper_of<'a, E: SweepValue>(
         &self,
         fronts: impl Iterator<Item = &'a Front>,
         y: &mut [E],
@@ -75,7 +75,7 @@ impl PartialCholesky {
 }
 
 /// x ← L⁻¹ x and w ← w − L_below x for `work` = [x; w] and a panel of `width` columns.
-pub(super) fn eliminate<E: Entry>(panel: &[f64], width: usize, work: &mut [E]) {
+pub(super) fn eliminate<E: SweepValue>(panel: &[f64], width: usize, work: &mut [E]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS) {
         let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
@@ -89,7 +89,7 @@ pub(super) fn eliminate<E: Entry>(panel: &[f64], width: usize, work: &mut [E]) {
 }
 
 /// x ← L⁻ᵀ (x − L_belowᵀ w) for `work` = [x; w].
-pub(super) fn substitute<E: Entry>(panel: &[f64], width: usize, work: &mut [E]) {
+pub(super) fn substitute<E: SweepValue>(panel: &[f64], width: usize, work: &mut [E]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS).rev() {
         let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);

@@ -9,13 +9,13 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::deal::{deal, Share};
+use super::deal::{deal, FrontOwner};
 use super::symbolic::{Front, Symbolic, ABSENT};
 use base::linalg::sorted::distinct;
 use parallel::post::Address;
 
 /// Ranks that share a factor, and who of them has which front.
-pub struct Team {
+pub struct FactorTeam {
     pub(super) comm: SimpleCommunicator,
     /// The pattern; it has room for the panels of the own fronts alone. Of a team that is [narrowed](Team::narrowed) it
     /// has the own fronts and those with which they exchange something, and the rows of these.
@@ -23,9 +23,9 @@ pub struct Team {
     /// The own fronts, in the order in which this rank eliminates them.
     pub(super) own: Vec<usize>,
     /// The own fronts in parts, between messages.
-    pub(super) runs: Vec<Run>,
+    pub(super) runs: Vec<FrontChain>,
     /// Where each dof is kept.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<DistributedIndex>,
     /// The number of each dof among those of all ranks; `None`: they are all numbered here.
     pub(super) names: Option<Vec<u32>>,
     /// The rows of the own fronts, increasing, and the rows of others below them.
@@ -37,7 +37,7 @@ pub struct Team {
 const BUNDLE: usize = 8;
 
 /// Fronts that follow each other without a message between them.
-pub(super) struct Run {
+pub(super) struct FrontChain {
     /// The children of the first front that other ranks have.
     pub children: Vec<(usize, Address)>,
     /// Places in the list of own fronts.
@@ -49,17 +49,17 @@ pub(super) struct Run {
 /// Where the entry of a dof is kept in a vector that no rank has whole: a distributed vector that has the rows of the
 /// ranks' fronts, rank after rank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct DistributedIndex {
     /// The rank that has its front.
     pub rank: u32,
     /// The number in the vector.
     pub number: u32,
 }
 
-impl Team {
+impl FactorTeam {
     /// Deals out the fronts of `symbolic` to the ranks of `comm`. `home` has, for each dof, the rank that would have it
     /// rather than others; it is empty if that does not matter. Collective.
-    pub fn new(comm: &SimpleCommunicator, symbolic: Symbolic, home: &[u32]) -> Team {
+    pub fn new(comm: &SimpleCommunicator, symbolic: Symbolic, home: &[u32]) -> FactorTeam {
         let comm = comm.duplicate();
         let rank = comm.rank() as u32;
         let homes: Vec<u32> = if home.is_empty() {
@@ -69,7 +69,7 @@ impl Team {
         };
         let shares = deal(&symbolic.fronts, comm.size() as usize, &homes);
         let mine = |above: bool| {
-            let share = Share { rank, above };
+            let share = FrontOwner { rank, above };
             let shares = &shares;
             (0..shares.len()).filter(move |&f| shares[f] == share)
         };
@@ -82,7 +82,7 @@ impl Team {
         let below = rows.flat_map(|f| f.below.iter().copied());
         let ghost_rows = distinct(below.filter(|&p| place(p).rank != rank));
         let symbolic = symbolic.with_panels(&own);
-        Team {
+        FactorTeam {
             comm,
             symbolic: symbolic.into(),
             own,
@@ -144,7 +144,7 @@ impl Team {
     }
 
     /// Where a dof of the matrix is kept.
-    pub fn place(&self, dof: u32) -> Place {
+    pub fn place(&self, dof: u32) -> DistributedIndex {
         self.places[dof as usize]
     }
 
@@ -181,7 +181,7 @@ impl Team {
         self.dofs().take(self.own_rows.len())
     }
 
-    pub(super) fn fronts(&self, run: &Run) -> impl DoubleEndedIterator<Item = &Front> + '_ {
+    pub(super) fn fronts(&self, run: &FrontChain) -> impl DoubleEndedIterator<Item = &Front> + '_ {
         let numbers = self.own[run.fronts.clone()].iter();
         numbers.map(|&f| &self.symbolic.fronts[f])
     }
@@ -189,14 +189,14 @@ impl Team {
     /// The fronts of a run in bundles, after each of which a solve looks after its messages.
     pub(super) fn bundles<'a>(
         &'a self,
-        run: &Run,
+        run: &FrontChain,
     ) -> impl DoubleEndedIterator<Item = impl DoubleEndedIterator<Item = &'a Front> + 'a> + 'a {
         let bundles = self.own[run.fronts.clone()].chunks(BUNDLE);
         bundles.map(|numbers| numbers.iter().map(|&f| &self.symbolic.fronts[f]))
     }
 
     /// The last front of a run.
-    pub(super) fn last(&self, run: &Run) -> usize {
+    pub(super) fn last(&self, run: &FrontChain) -> usize {
         self.own[run.fronts.end - 1]
     }
 
@@ -209,7 +209,7 @@ impl Team {
 }
 
 /// The own fronts in parts that begin where something arrives and end where something leaves.
-fn runs(fronts: &[Front], shares: &[Share], own: &[usize], ranks: usize) -> Vec<Run> {
+fn runs(fronts: &[Front], shares: &[FrontOwner], own: &[usize], ranks: usize) -> Vec<FrontChain> {
     let Some(rank) = own.first().map(|&f| shares[f].rank) else {
         return Vec::new();
     };
@@ -234,7 +234,7 @@ fn runs(fronts: &[Front], shares: &[Share], own: &[usize], ranks: usize) -> Vec<
             parent[f] = Some(with(to));
         }
     }
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<FrontChain> = Vec::new();
     for (at, &f) in own.iter().enumerate() {
         let arriving = std::mem::take(&mut children[f]);
         match runs.last_mut() {
@@ -242,7 +242,7 @@ fn runs(fronts: &[Front], shares: &[Share], own: &[usize], ranks: usize) -> Vec<
                 run.fronts.end = at + 1;
                 run.parent = parent[f];
             }
-            _ => runs.push(Run {
+            _ => runs.push(FrontChain {
                 children: arriving,
                 fronts: at..at + 1,
                 parent: parent[f],
@@ -253,7 +253,7 @@ fn runs(fronts: &[Front], shares: &[Share], own: &[usize], ranks: usize) -> Vec<
 }
 
 /// The place of each dof.
-fn places(symbolic: &Symbolic, shares: &[Share], size: usize) -> Vec<Place> {
+fn places(symbolic: &Symbolic, shares: &[FrontOwner], size: usize) -> Vec<DistributedIndex> {
     let fronts = &symbolic.fronts;
     // The number of the next row of each rank.
     let mut next = vec![0u32; size + 1];
@@ -264,12 +264,12 @@ fn places(symbolic: &Symbolic, shares: &[Share], size: usize) -> Vec<Place> {
         next[r + 1] += next[r];
     }
     // Dofs in no front are nowhere.
-    let nowhere = Place { rank: 0, number: 0 };
+    let nowhere = DistributedIndex { rank: 0, number: 0 };
     let mut places = vec![nowhere; symbolic.position.len()];
     for (front, share) in fronts.iter().zip(shares) {
         let next = &mut next[share.rank as usize];
         for &dof in &symbolic.interior[front.start..front.end] {
-            places[dof as usize] = Place {
+            places[dof as usize] = DistributedIndex {
                 rank: share.rank,
                 number: *next,
             };

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::matrices::random;
-use crate::strips::{self, Update};
+use crate::strips::{self, SchurUpdate};
 
 /// Factors a panel with these diagonal entries, and computes its update.
 type How = fn(&mut Dense, &mut [f64], &[f64], f64, &mut Scratch) -> Vec<usize>;
@@ -41,7 +41,10 @@ fn a_front_at_once_and_by_groups_are_the_same() {
                 assert!(error < 1e-12 * largest, "{n}, {w}: {error:.1e}");
             }
         }
-        let (left, other) = (Update::Strips(left), Update::Strips(left_by_groups));
+        let (left, other) = (
+            SchurUpdate::Strips(left),
+            SchurUpdate::Strips(left_by_groups),
+        );
         let columns = (0..n - w).map(|j| [&left, &other].map(|u| u.column(n - w, j)));
         for (a, b) in columns.flat_map(|[a, b]| a.iter().zip(b)) {
             let error = (a - b).abs();

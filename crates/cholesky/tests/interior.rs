@@ -2,7 +2,7 @@
 
 use faer::linalg::solvers::Solve;
 
-use super::{Condenser, Factor};
+use super::{Condenser, InteriorFactor};
 use crate::matrices::{grid_laplacian, random};
 use crate::multifrontal::PartialCholesky;
 use crate::symbolic::{Keep, Symbolic};
@@ -143,7 +143,7 @@ fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
 
 /// Checks that the condensed load of K u is S u_Γ, and that back substitution from u_Γ gives u.
 fn check(
-    factor: &Factor,
+    factor: &InteriorFactor,
     case: &Case,
     s: &base::linalg::dense::Dense,
     u: &[f64],

@@ -42,8 +42,8 @@ fn a_column_is_where_it_was_written() {
                 }
             }
         }
-        let strips = Update::Strips(triangle);
-        let message = Update::Packed(strips.packed(order));
+        let strips = SchurUpdate::Strips(triangle);
+        let message = SchurUpdate::Packed(strips.packed(order));
         for j in 0..order {
             let expected: Vec<f64> = (j..order).map(|i| value(i, j)).collect();
             assert_eq!(strips.column(order, j), expected, "{order}");

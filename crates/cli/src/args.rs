@@ -29,7 +29,7 @@ const OPTIONS: &str =
 #[command(name = "fetifeti", version, after_help = PETSC)]
 // PETSc has the options of one dash, -h and -V among them.
 #[command(disable_help_flag = true, disable_version_flag = true)]
-pub struct Line {
+pub struct CommandLine {
     #[command(subcommand)]
     pub command: Option<Command>,
     /// Say this, or more of the command
@@ -48,10 +48,10 @@ pub enum Command {
     /// The directory of --out gets solution.vtu, solution.png and report.json; with contact also
     /// interfaces.png, .svg and .csv; with load steps also solution.pvd, step_*.vtu, steps.png, .svg and .csv.
     #[command(after_help = OPTIONS)]
-    Solve(Solve),
+    Solve(SolveArguments),
     /// Validate a scene; say what the solver will build and why, with sizes and memory
     #[command(after_help = OPTIONS)]
-    Plan(Plan),
+    Plan(PlanArguments),
     /// Solve a scene with PETSc's solvers, too
     ///
     /// All are driven to the same relative residual. The options of PETSc's solvers have the prefixes
@@ -149,7 +149,7 @@ impl From<Results> for Destination {
 
 /// Arguments of `solve`.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
-pub struct Solve {
+pub struct SolveArguments {
     /// The scene, a TOML file
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
@@ -171,7 +171,7 @@ pub struct Solve {
 
 /// Arguments of `plan`.
 #[derive(Debug, Clone, PartialEq, Args)]
-pub struct Plan {
+pub struct PlanArguments {
     /// The scene, a TOML file
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,

@@ -20,7 +20,7 @@ use scene::{Body, Forces, Scene, Wrench};
 /// The forces on a body.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Pod, Zeroable)]
-struct Sums {
+struct ForceSums {
     load: Wrench,
     springs: Wrench,
     contact: Wrench,
@@ -36,15 +36,15 @@ struct Sums {
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct BodySums {
     body: usize,
-    sums: Sums,
+    sums: ForceSums,
 }
 
-impl Sums {
+impl ForceSums {
     fn all(&self) -> [&Wrench; 4] {
         [&self.load, &self.springs, &self.contact, &self.reaction]
     }
 
-    fn add(&mut self, more: &Sums) {
+    fn add(&mut self, more: &ForceSums) {
         self.load.merge(&more.load);
         self.springs.merge(&more.springs);
         self.contact.merge(&more.contact);
@@ -72,7 +72,7 @@ pub(super) fn bodies(
     solution: &Solution,
     (step, strained): (usize, &mut f64),
 ) -> Result<Vec<Balanced>> {
-    let mut sums = vec![Sums::default(); scene.n_bodies()];
+    let mut sums = vec![ForceSums::default(); scene.n_bodies()];
     let locals = solver.problem().local.iter().zip(&solution.u);
     let of_subdomains = locals.map(|(sub, u)| Ok((sub.body, of_subdomain(scene, sub, u, step)?)));
     for (body, forces) in session.agree(of_subdomains.collect::<Result<Vec<_>>>())? {
@@ -123,11 +123,11 @@ pub(super) fn bodies(
     let supported = supported(scene);
     let columns = &solver.dual().natural.columns;
     let each = scene.bodies.iter().zip(&sums).enumerate();
-    let of_body = |(b, (body, sums)): (usize, (&Body, &Sums))| {
+    let of_body = |(b, (body, sums)): (usize, (&Body, &ForceSums))| {
         let floats = !columns.of(b).is_empty();
         let held = !body.prescribed.is_empty() || supported.binary_search(&b).is_ok();
         let free = error.free.binary_search(&b).is_ok();
-        balance(scene, body, sums, (floats, held, free), &error)
+        body_balance(scene, body, sums, (floats, held, free), &error)
     };
     Ok(each.map(of_body).collect())
 }
@@ -168,7 +168,7 @@ const ROUNDING: f64 = 1e-12;
 /// with the errors of u and λ at most a few times ‖u − u*‖_K ‖v‖_K (docs/theory.md, section 8). A stiff body that bears
 /// little has a large ‖v‖_K, and its reaction few digits; bodies that nothing holds have none but rounding, since the
 /// iteration keeps Gᵀ λ = e.
-struct Error {
+struct IterationError {
     /// The imbalance that is permitted, relative to the forces.
     relative: f64,
     /// The estimate of ‖u − u*‖_K, times [`SAFETY`].
@@ -200,7 +200,7 @@ fn error(
     solver: &FetiFeti,
     solution: &Solution,
     strained: &mut f64,
-) -> Result<Error> {
+) -> Result<IterationError> {
     let mut squares = 0.0;
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
         let mut force = vec![0.0; u.len()];
@@ -213,7 +213,7 @@ fn error(
     let known = solution.kkt.error.unwrap_or(rtol);
     let rows = solver.problem().rows.iter();
     let rounding = rows.map(|row| row.rounding).fold(0.0, f64::max);
-    Ok(Error {
+    Ok(IterationError {
         relative: rtol.clamp(LEAST, 0.1),
         input: highest(session.comm(), rounding),
         free: distinct(solver.free_motions().into_iter().flat_map(|m| m.bodies)),
@@ -225,12 +225,12 @@ fn error(
 ///
 /// In components along which the body cannot move as a whole nothing balances: rings bear radial forces by themselves,
 /// and a scalar has one component.
-fn balance(
+fn body_balance(
     scene: &Scene,
     body: &Body,
-    sums: &Sums,
+    sums: &ForceSums,
     (floats, held, free): (bool, bool, bool),
-    error: &Error,
+    error: &IterationError,
 ) -> Balanced {
     let input = if free {
         error.input.max(FREE)

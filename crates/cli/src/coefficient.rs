@@ -3,7 +3,7 @@
 use base::Result;
 use parallel::exchange::{max_all, min_all};
 use petsc::Session;
-use scene::{distribution, Cells, Field, Scene};
+use scene::{distribution, CellGrid, Field, Scene};
 
 /// The range of ρ (Young's modulus in elasticity).
 #[derive(Debug, Clone, PartialEq)]
@@ -76,8 +76,8 @@ fn number(x: f64) -> String {
 }
 
 /// The coefficient files, each once.
-fn files(scene: &Scene) -> Vec<&Cells> {
-    let mut out: Vec<&Cells> = Vec::new();
+fn files(scene: &Scene) -> Vec<&CellGrid> {
+    let mut out: Vec<&CellGrid> = Vec::new();
     for body in &scene.bodies {
         if let Field::Cells(cells) = &body.spec.rho {
             if out.iter().all(|c| c.name() != cells.name()) {

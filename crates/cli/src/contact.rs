@@ -9,9 +9,9 @@ use fetifeti::Solution;
 use petsc::Session;
 use report::interfaces::InterfaceNodes;
 use report::json::contact::{InterfaceForce, InterfaceKind, OuterStep, Slid};
-use report::plots::profile::Profile;
+use report::plots::profile::InterfaceProfile;
 use scene::sliding::Sliding;
-use scene::{Scene, Shape};
+use scene::{InterfaceShape, Scene};
 
 /// All rows on rank 0, ordered by interface and t; empty on the other ranks. Collective.
 pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
@@ -171,20 +171,20 @@ pub(super) fn nodes(
 }
 
 /// The profiles of multiplier and gap along every interface that has inequalities.
-pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
+pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceProfile> {
     let profile = |(rows, smoothed): (&[SolvedRow], Vec<f64>)| {
         let along = match rows[0].label.source {
             RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
             RowSource::Equation(_) => 0,
             RowSource::Interface(k) => match scene.interfaces[k].shape {
-                Shape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
-                Shape::Corner => 0,
+                InterfaceShape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
+                InterfaceShape::Corner => 0,
             },
         };
         // Along a curved side no coordinate increases monotonically.
         let body = rows[0].body();
         let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
-        Profile {
+        InterfaceProfile {
             nodes: nodes(scene, (rows, smoothed), scene.has_pressure()),
             label: if curved { "t" } else { ["x", "y"][along] }.into(),
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::early::Early;
 use super::events::Events;
-use super::fields::{Gathered, Place};
+use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
 use super::renewed::Renewed;
 use super::{balance, contact};
@@ -19,7 +19,7 @@ use report::destination::Destination;
 use report::json::certified::Certified;
 use report::json::contact::{BodyBalance, LoadStep, OuterStep};
 use report::paraview::pvd::Pvd;
-use report::progress::Progress;
+use report::progress::ProgressLine;
 use scene::sliding::{self, Sliding};
 use scene::{distribution, Displaced, Scene, Stepping};
 
@@ -60,13 +60,13 @@ pub(super) fn follow(
     scene: &Scene,
     solver: &mut FetiFeti,
     destination: &Destination,
-    place: Place,
+    place: GatherTarget,
     (checkpoints, events): (Checkpoints, &Events),
 ) -> Result<Course> {
     let n = scene.n_steps();
     let times = scene.steps.as_ref().map(|s| s.times.clone());
     let owns = distribution::owner(session, scene)?;
-    let mut progress = Progress::new(session.rank() == 0 && !destination.quiet);
+    let mut progress = ProgressLine::new(session.rank() == 0 && !destination.quiet);
     let mut course: Option<Course> = None;
     let mut pvd = destination
         .out
@@ -239,7 +239,7 @@ fn list_before(
     session: &Session,
     dir: &Path,
     times: &[f64],
-    place: Place,
+    place: GatherTarget,
     pvd: &mut Pvd,
 ) -> Result<()> {
     if session.rank() > 0 {

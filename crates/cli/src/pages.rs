@@ -6,14 +6,14 @@ use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::args::Line;
+use super::args::CommandLine;
 use base::{Error, Result};
 use report::destination::Destination;
 use report::output;
 
 /// The completion script for a shell.
 pub fn completions(shell: Shell) -> String {
-    let line = Line::command();
+    let line = CommandLine::command();
     // Commands by which processes of the program call each other are left out.
     let users = line.get_subcommands().filter(|c| !c.is_hide_set()).cloned();
     let mut shown = Command::new("fetifeti")
@@ -29,7 +29,7 @@ pub fn completions(shell: Shell) -> String {
 
 /// Prints the manual page of the program, or writes it into the directory with those of its commands.
 pub fn manual(dir: Option<&Path>) -> Result<()> {
-    let mut line = Line::command().disable_help_subcommand(true);
+    let mut line = CommandLine::command().disable_help_subcommand(true);
     line.build();
     let Some(dir) = dir else {
         return output::print(&roff(&Man::new(line))?);

@@ -5,7 +5,7 @@ use std::os::unix::fs::FileTypeExt;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
-use super::args::{Command, Line};
+use super::args::{Command, CommandLine};
 use base::{Error, Result};
 
 /// The action that the arguments ask for.
@@ -37,8 +37,10 @@ pub fn parse(args: Vec<String>) -> Result<Invocation> {
     let words: Vec<String> = set.split_whitespace().map(String::from).collect();
     check_options_files(&words).map_err(|e| Error::input("PETSC_OPTIONS").because(e))?;
     let words = std::iter::once("fetifeti".to_string()).chain(ours);
-    let wanted = match Line::try_parse_from(words) {
-        Ok(Line { command, .. }) => command.map_or_else(|| Wanted::Say(usage()), Wanted::Run),
+    let wanted = match CommandLine::try_parse_from(words) {
+        Ok(CommandLine { command, .. }) => {
+            command.map_or_else(|| Wanted::Say(usage()), Wanted::Run)
+        }
         Err(said) if !said.use_stderr() => Wanted::Say(said.to_string()),
         Err(mistake) => return Err(Error::input(sentence(&mistake))),
     };
@@ -47,7 +49,7 @@ pub fn parse(args: Vec<String>) -> Result<Invocation> {
 
 /// The text that `fetifeti --help` prints.
 pub fn usage() -> String {
-    Line::command().render_help().to_string()
+    CommandLine::command().render_help().to_string()
 }
 
 /// Separates our arguments from PETSc's, in the manner of PETSc: an argument behind an option is its value unless it is

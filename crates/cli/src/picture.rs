@@ -12,13 +12,13 @@ use fetifeti::problem::RowSource;
 use fetifeti::solution::SolvedRow;
 use mesh::Mesh as BodyMesh;
 use report::drawing::ticks::number;
-use report::pictures::field::{self, ContactMark, Field, Mesh};
+use report::pictures::field::{self, ContactMark, PlaneMesh, ShownField};
 use report::pictures::mesh::bounds;
-use report::pictures::obstacles::Obstacle;
+use report::pictures::obstacles::ShownObstacle;
 use report::pictures::pieces::pieces;
 use report::pictures::rigid_faces::{Beside, Polygon};
-use report::pictures::solid::{self, FaceMark, Solid};
-use report::pictures::values::Values;
+use report::pictures::solid::{self, FaceMark, SolidMesh};
+use report::pictures::values::ShownValues;
 use scene::Scene;
 
 /// Magnified, bodies may overlap by at most this part of the scene's size: by the width of a line.
@@ -50,15 +50,15 @@ pub(super) fn write(
         .collect();
     let von_mises: Vec<f64> = all.von_mises();
     let coefficient = ["coefficient ρ", "Young's modulus E"][usize::from(elastic)];
-    let coefficient = Field::coefficient(coefficient, &all.rho);
+    let coefficient = ShownField::coefficient(coefficient, &all.rho);
     let first = if elastic {
-        Field::nodal("displacement |u|", &u)
+        ShownField::nodal("displacement |u|", &u)
     } else {
-        Field::nodal("solution u", &u)
+        ShownField::nodal("solution u", &u)
     };
     let mut fields = vec![first];
     if elastic {
-        fields.push(Field::nodal("von Mises stress", &von_mises));
+        fields.push(ShownField::nodal("von Mises stress", &von_mises));
     } else if scene.dim() == 3 {
         // The second picture shows the bodies moved apart.
         fields.push(first);
@@ -76,7 +76,7 @@ pub(super) fn write(
         faces: &faces(scene, step),
     };
     if scene.dim() == 3 {
-        let solid = Solid {
+        let solid = SolidMesh {
             points: &all.points,
             shown: &moved.points,
             cells: &all.cells,
@@ -90,8 +90,8 @@ pub(super) fn write(
         |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
     let points = flat(&all.points);
     let shown = flat(&moved.points);
-    let plane = Plane::new(all);
-    let mesh = Mesh {
+    let plane = PlaneCells::new(all);
+    let mesh = PlaneMesh {
         points: &points,
         shown: &shown,
         corners: &plane.corners,
@@ -100,8 +100,8 @@ pub(super) fn write(
     };
     let by_piece = plane.of(&all.rho);
     for field in &mut fields {
-        if matches!(field.values, Values::Cell(_)) {
-            field.values = Values::Cell(&by_piece);
+        if matches!(field.values, ShownValues::Cell(_)) {
+            field.values = ShownValues::Cell(&by_piece);
         }
     }
     let copies = all.copies(rows);
@@ -118,9 +118,9 @@ pub(super) fn write(
 
 /// The rigid bodies of the scene, each once, with the gap of the row that is nearest to contact: rows say
 /// n·u ≤ distance + gap.
-fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<Obstacle> {
+fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<ShownObstacle> {
     let copies = all.copies(rows);
-    let mut out: Vec<Obstacle> = Vec::new();
+    let mut out: Vec<ShownObstacle> = Vec::new();
     for rows in by_source(rows) {
         let RowSource::Obstacle(k) = rows[0].label.source else {
             continue;
@@ -134,7 +134,7 @@ fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<Obstacle>
         let distance = rigid.distance(row.label.point).map_or(0.0, |d| d.0);
         let gap = row.gap + dot(u, row.normal()) - distance;
         if !out.iter().any(|o| o.rigid == rigid) {
-            out.push(Obstacle { rigid, gap });
+            out.push(ShownObstacle { rigid, gap });
         }
     }
     out
@@ -164,14 +164,14 @@ fn faces(scene: &Scene, step: usize) -> Vec<Polygon> {
 }
 
 /// The cells of plane bodies, cut into pieces.
-struct Plane {
+struct PlaneCells {
     corners: Vec<[u32; 4]>,
     /// The cell of each piece.
     cell: Vec<usize>,
 }
 
-impl Plane {
-    fn new(all: &Gathered) -> Plane {
+impl PlaneCells {
+    fn new(all: &Gathered) -> PlaneCells {
         let (mut corners, mut cell) = (Vec::new(), Vec::new());
         for (c, (kind, nodes)) in all.cells.iter().enumerate() {
             for piece in pieces(kind) {
@@ -179,7 +179,7 @@ impl Plane {
                 cell.push(c);
             }
         }
-        Plane { corners, cell }
+        PlaneCells { corners, cell }
     }
 
     /// Values of cells, piece by piece.

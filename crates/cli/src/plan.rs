@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::args::Plan;
+use super::args::PlanArguments;
 use super::coefficient::Coefficient;
 use super::doubts;
 use super::first_rank::on_first_rank;
@@ -12,7 +12,7 @@ use super::plan_tables::{bodies, interfaces, LIST};
 use super::record::adaptive;
 use super::solve::lines;
 use base::Result;
-use fetifeti::inside::{watch, Sizes, JUMPS};
+use fetifeti::inside::{watch, ProblemSizes, JUMPS};
 use fetifeti::settings::{Adaptive, MethodSettings, PcType};
 use fetifeti::{FetiFeti, Problem};
 use parallel::team::Team;
@@ -21,7 +21,7 @@ use report::destination::Destination;
 use scene::{distribution, fits, Scene};
 
 /// Validates the scene and prints the plan.
-pub fn run(session: &Session, args: Plan) -> Result<()> {
+pub fn run(session: &Session, args: PlanArguments) -> Result<()> {
     let destination = Destination {
         json: args.json,
         ..Destination::default()
@@ -37,7 +37,7 @@ pub fn run(session: &Session, args: Plan) -> Result<()> {
     let settings = MethodSettings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
-    let sizes = Sizes::with(session, &substructures, &team, settings.primal)?;
+    let sizes = ProblemSizes::with(session, &substructures, &team, settings.primal)?;
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
     let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene));
@@ -115,7 +115,7 @@ fn deflation(
     Ok(out)
 }
 
-fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
+fn text(scene: &Scene, sizes: &ProblemSizes, coefficient: &Coefficient) -> String {
     let plan = scene.plan();
     let mut out = lines(&scene.sentences());
     let so =
@@ -135,7 +135,7 @@ fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     out
 }
 
-fn decisions(scene: &Scene, plan: &scene::Plan, sizes: &Sizes) -> String {
+fn decisions(scene: &Scene, plan: &scene::ScenePlan, sizes: &ProblemSizes) -> String {
     let mut out = String::new();
     let mut line = |what: &str, text: String| {
         let _ = writeln!(out, "{what:<22}{text}");
@@ -237,7 +237,7 @@ fn decisions(scene: &Scene, plan: &scene::Plan, sizes: &Sizes) -> String {
 }
 
 /// A sentence with the number of bodies that float in all their rigid motions, and in some of them.
-fn kernels(scene: &Scene, sizes: &Sizes) -> String {
+fn kernels(scene: &Scene, sizes: &ProblemSizes) -> String {
     if !scene.form.is_elastic() {
         return String::new();
     }
@@ -258,7 +258,7 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
 }
 
 /// A sentence on the primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
-fn constraints(scene: &Scene, plan: &scene::Plan, primal: usize, largest: usize) -> String {
+fn constraints(scene: &Scene, plan: &scene::ScenePlan, primal: usize, largest: usize) -> String {
     if scene.dim() == 2 && !scene.form.is_elastic() {
         return format!("{primal} vertices, at most {largest} in a body");
     }
@@ -274,7 +274,7 @@ fn constraints(scene: &Scene, plan: &scene::Plan, primal: usize, largest: usize)
 }
 
 /// A sentence on what load steps renew.
-fn renewed(scene: &Scene, plan: &scene::Plan) -> String {
+fn renewed(scene: &Scene, plan: &scene::ScenePlan) -> String {
     let [renewed, kept] = scene.renewed_pairs();
     let mut out = format!(
         "at each load step normals, pairing and gaps of {renewed} contact pairs and {} obstacles, where the last step \
@@ -291,7 +291,7 @@ fn renewed(scene: &Scene, plan: &scene::Plan) -> String {
 }
 
 /// A sentence on the inequalities.
-fn inequalities(plan: &scene::Plan) -> String {
+fn inequalities(plan: &scene::ScenePlan) -> String {
     let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
     let contact = format!(
         "{} in {}",

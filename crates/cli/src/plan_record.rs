@@ -2,13 +2,13 @@
 
 use super::{doubts, physics, record};
 use base::Result;
-use fetifeti::inside::Sizes;
+use fetifeti::inside::ProblemSizes;
 use petsc::Session;
 use report::json::{Multipliers, PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 use scene::{fits, Scene};
 
 /// The record that `plan --json` writes. Collective.
-pub(super) fn report(session: &Session, scene: &Scene, sizes: &Sizes) -> Result<PlanReport> {
+pub(super) fn report(session: &Session, scene: &Scene, sizes: &ProblemSizes) -> Result<PlanReport> {
     let plan = scene.plan();
     let left = session.agree(fits::left(session, None))?;
     let product = |counts: [usize; 3]| counts.iter().map(|&n| n.max(1)).product();

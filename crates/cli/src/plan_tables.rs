@@ -1,14 +1,14 @@
 //! The tables of `fetifeti plan`: bodies, the faces where they touch, rigid surfaces.
 
-use fetifeti::inside::Sizes;
+use fetifeti::inside::ProblemSizes;
 use report::tables::table::Table;
-use scene::{BodyPlan, InterfacePlan, Plan, Scene, SidePair};
+use scene::{BodyPlan, InterfacePlan, Scene, ScenePlan, SidePair};
 
 /// Bodies and interfaces are listed one by one up to this number.
 pub(super) const LIST: usize = 24;
 
 /// The bodies with their sizes, and how far they are held.
-pub(super) fn bodies(plan: &Plan, sizes: &Sizes) -> String {
+pub(super) fn bodies(plan: &ScenePlan, sizes: &ProblemSizes) -> String {
     // Only solids have elements in z.
     let solid = plan.bodies.iter().any(|b| b.elements[2] > 0);
     // A mesh of cells has no rows of elements.
@@ -56,7 +56,7 @@ fn grid(counts: [usize; 3], dim: usize) -> String {
 }
 
 /// The pairs of bodies that touch or face each other, with the area, the gaps and the angle between their sides.
-pub(super) fn interfaces(scene: &Scene, plan: &Plan) -> String {
+pub(super) fn interfaces(scene: &Scene, plan: &ScenePlan) -> String {
     let surfaces = surfaces(scene);
     if plan.interfaces.is_empty() {
         return surfaces;

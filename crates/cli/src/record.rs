@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::course::Course;
 use super::{contact, doubts, physics};
 use base::Result;
-use fetifeti::inside::distributed::{self, Work};
+use fetifeti::inside::distributed::{self, CoarseSolves};
 use fetifeti::inside::factorisations;
-use fetifeti::solution::{Facts, Spectrum};
+use fetifeti::solution::{SetUpSummary, Spectrum};
 use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
 use petsc::{max_memory, Options, Session};
@@ -130,7 +130,7 @@ pub(super) fn report(
 }
 
 /// The record of a solver of GᵀQG.
-fn natural_coarse(work: Work) -> NaturalCoarse {
+fn natural_coarse(work: CoarseSolves) -> NaturalCoarse {
     NaturalCoarse {
         solver: work.solver,
         iterated: work.iterated,
@@ -213,7 +213,7 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
 }
 
 /// The value of key `operators`. Collective.
-fn operators(session: &Session, facts: &Facts) -> Operators {
+fn operators(session: &Session, facts: &SetUpSummary) -> Operators {
     let mut sums = [
         facts.kinds as f64,
         facts.implicit_kinds as f64,

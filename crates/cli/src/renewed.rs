@@ -25,7 +25,7 @@ pub(super) struct Renewed<'a> {
 }
 
 /// The cost of a renewal: seconds of set-up, and subdomains that were factored, over all ranks.
-type Cost = (f64, usize);
+type RenewalCost = (f64, usize);
 
 impl<'a> Renewed<'a> {
     pub fn new(scene: &'a Scene) -> Renewed<'a> {
@@ -105,13 +105,13 @@ impl<'a> Renewed<'a> {
         solver: &mut FetiFeti,
         last: &Course,
         step: usize,
-    ) -> Result<Option<(Option<State>, Cost)>> {
+    ) -> Result<Option<(Option<State>, RenewalCost)>> {
         let Some(scene) = &self.present else {
             return Ok(None);
         };
         let (clock, before) = (Instant::now(), factorisations());
         let solved = SolvedRow::on_all_ranks(session.comm(), last.solution.rows());
-        let mut known: HashMap<Place, (f64, bool)> = HashMap::new();
+        let mut known: HashMap<RowKey, (f64, bool)> = HashMap::new();
         for row in &solved {
             let value = (row.multiplier, row.holds());
             for place in places(scene, &row.label, row.is_inequality()) {
@@ -155,10 +155,10 @@ impl Renewed<'_> {
 }
 
 /// Where a row is: what it joins its node to, the node, and the direction of an equation.
-type Place = (RowSource, BodyNode, usize);
+type RowKey = (RowSource, BodyNode, usize);
 
 /// The places of a row: first that of the node that carries its multiplier. Interfaces are named by the other body.
-fn places(scene: &Scene, label: &RowLabel, inequality: bool) -> impl Iterator<Item = Place> {
+fn places(scene: &Scene, label: &RowLabel, inequality: bool) -> impl Iterator<Item = RowKey> {
     let n = label.normal.map(f64::abs);
     let direction = if inequality {
         3

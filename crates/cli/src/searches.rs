@@ -2,7 +2,7 @@
 
 use std::io::IsTerminal;
 
-use petsc::{Search, Session};
+use petsc::{EigenSearch, Session};
 use report::pace::left;
 
 /// Shows the course of searches from now on, on the first rank and on a terminal.
@@ -16,7 +16,7 @@ pub(super) fn show(session: &Session, quiet: bool) {
 }
 
 /// Such as "exact spectrum: smallest eigenvalue, restart 12, residual 1.3e-3 of 4.0e-7, about 20 s left".
-fn line(search: &Search) -> String {
+fn line(search: &EigenSearch) -> String {
     let end = if search.largest {
         "largest"
     } else {

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::solution::SolvedRow;
-use scene::{Scene, Shape};
+use scene::{InterfaceShape, Scene};
 
 /// Pressures are smoothed where the side with the multipliers is finer by more than this factor. Between meshes that
 /// are nearly alike smoothing takes away more than it mends (docs/benchmarks.md).
@@ -26,7 +26,7 @@ const FINER: f64 = 1.75;
 const OSCILLATES: f64 = 0.05;
 
 /// The pressures of rows from one interface.
-struct Side<'a> {
+struct PressureSide<'a> {
     /// Places of the rows that touch.
     places: Vec<usize>,
     /// Their areas and pressures.
@@ -104,8 +104,8 @@ pub(super) fn warnings(scene: &Scene, rows: &[SolvedRow]) -> Vec<String> {
 }
 
 /// The rows that touch by interface, where nodes do not match.
-fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, Side<'a>> {
-    let mut out: BTreeMap<usize, Side> = BTreeMap::new();
+fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, PressureSide<'a>> {
+    let mut out: BTreeMap<usize, PressureSide> = BTreeMap::new();
     if scene.mortar.is_empty() {
         return out;
     }
@@ -129,10 +129,14 @@ fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, Side<'a>> 
             let mut faces = spec.faces(interface.sides[theirs]);
             faces.all(|face| face.nodes.len() == face.outline().len())
         });
-        if !*straight || !row.is_inequality() || !row.holds() || interface.shape != Shape::Face {
+        if !*straight
+            || !row.is_inequality()
+            || !row.holds()
+            || interface.shape != InterfaceShape::Face
+        {
             continue;
         }
-        let side = out.entry(k).or_insert_with(|| Side {
+        let side = out.entry(k).or_insert_with(|| PressureSide {
             places: Vec::new(),
             area: Vec::new(),
             raw: Vec::new(),
@@ -150,7 +154,7 @@ fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, Side<'a>> 
     out
 }
 
-impl Side<'_> {
+impl PressureSide<'_> {
     /// S of some values at the nodes.
     fn spread(&self, values: &[f64]) -> Vec<f64> {
         let mut theirs: HashMap<usize, (f64, f64)> = HashMap::new();

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::Solve;
+use super::args::SolveArguments;
 use super::contact;
 use super::course::{follow, Course};
 use super::events::Events;
-use super::fields::{Gathered, Place};
+use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
 use super::record::{checks, report};
-use super::values::Values;
+use super::values::NodalValues;
 use super::{doubts, inputs, maps, picture, smoothed};
 use crate::checkpoint::Checkpoints;
 use base::{Error, Result};
@@ -31,7 +31,7 @@ use scene::{distribution, fits, DeckScenes, Scene};
 const DIRECTIONS: usize = 30;
 
 /// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
-pub fn run(session: &Session, args: Solve) -> Result<()> {
+pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
     let clock = Instant::now();
     let destination = Destination::from(args.results.clone());
     if DeckScenes::is_deck(&args.scene) {
@@ -48,7 +48,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
 
 /// Solves the steps of a deck one after the other; each is a linear problem of its own. With several steps the results
 /// of each are in a directory of their own, and the report is that of the last.
-fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Result<()> {
+fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination) -> Result<()> {
     let in_full = fits::is_in_full(session)?;
     let deck = session.agree(DeckScenes::load(&args.scene))?;
     let deck = deck.integrated(in_full);
@@ -94,7 +94,8 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
     }
     on_first_rank(session, || match &destination.out {
         Some(dir) if !printed.is_empty() => {
-            let tables: Vec<deck::Table> = printed.iter().flat_map(|p| p.tables.clone()).collect();
+            let tables: Vec<deck::DatTable> =
+                printed.iter().flat_map(|p| p.tables.clone()).collect();
             output::write_text(&dir.join(format!("{stem}.dat")), &deck::write_dat(&tables))
         }
         _ => Ok(()),
@@ -118,7 +119,7 @@ struct FromDeck<'a> {
 /// Solves a scene and writes its results; returned is what the steps of its deck have printed up to this one.
 fn solve(
     session: &Session,
-    args: &Solve,
+    args: &SolveArguments,
     destination: &Destination,
     scene: &Scene,
     clock: Instant,
@@ -144,9 +145,9 @@ fn solve(
     let mut solver = FetiFeti::new(session, substructures, settings)?;
     give_back(); // lists of the set-up
     let place = if args.pieces {
-        Place::EachRank
+        GatherTarget::EachRank
     } else {
-        Place::FirstRank
+        GatherTarget::FirstRank
     };
     let written = (checkpoints, &events);
     let course = follow(session, scene, &mut solver, destination, place, written)?;
@@ -172,14 +173,14 @@ fn solve(
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {
-        let values = Values::displacements(session, scene, &solver, solution, course.step)?;
+        let values = NodalValues::displacements(session, scene, &solver, solution, course.step)?;
         let found = match session.rank() {
             0 => values.probes(scene),
             _ => Ok(Vec::new()),
         };
         report.probes = session.agree(found)?;
         let forces = match asked {
-            Some(true) => Some(Values::forces(session, scene, &solver, &course)?),
+            Some(true) => Some(NodalValues::forces(session, scene, &solver, &course)?),
             _ => None,
         };
         if let (0, Some(deck)) = (session.rank(), &deck) {
@@ -218,7 +219,11 @@ pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> E
 }
 
 /// Prints and writes the record. Warnings are on standard error, also where nothing else is printed.
-fn write_report(destination: &Destination, report: &SolveReport, place: Place) -> Result<()> {
+fn write_report(
+    destination: &Destination,
+    report: &SolveReport,
+    place: GatherTarget,
+) -> Result<()> {
     let so = "no load drives this, and of all places along it the answer has the one nearest to the start";
     destination.print(&lines(&doubts::free(&report.free_motions, so)))?;
     destination.print(&summary::solve(report))?;
@@ -255,10 +260,10 @@ fn write_fields(
     scene: &Scene,
     solver: &FetiFeti,
     course: &Course,
-    place: Place,
+    place: GatherTarget,
     dir: &Path,
 ) -> Result<()> {
-    let gathered = |place: Place| {
+    let gathered = |place: GatherTarget| {
         let mut fields = Gathered::new(session, scene, solver, place)?;
         fields.gather(session, scene, solver, &course.solution, course.step);
         Ok::<_, Error>(fields)
@@ -273,8 +278,8 @@ fn write_fields(
     // The picture shows the whole scene.
     let mut whole = None;
     let fields = match place {
-        Place::FirstRank => fields,
-        Place::EachRank => whole.insert(gathered(Place::FirstRank)?),
+        GatherTarget::FirstRank => fields,
+        GatherTarget::EachRank => whole.insert(gathered(GatherTarget::FirstRank)?),
     };
     on_first_rank(session, || {
         picture::write(scene, fields, &course.rows, course.step, dir)?;

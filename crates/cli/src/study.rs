@@ -20,7 +20,7 @@ use report::tables::table::Table;
 /// Runs a study and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
     let name = args.name.to_possible_value().expect("no study is hidden");
-    let task = Task {
+    let task = StudyTask {
         session,
         name: name.get_name().to_string(),
         case: args.case,
@@ -41,7 +41,7 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
 }
 
 /// A study with its arguments.
-struct Task<'a> {
+struct StudyTask<'a> {
     session: &'a Session,
     name: String,
     /// The only case to run; `None`: all.
@@ -50,7 +50,7 @@ struct Task<'a> {
     destination: Destination,
 }
 
-impl Task<'_> {
+impl StudyTask<'_> {
     fn hertz(&self) -> Result<()> {
         let report = hertz::run(self.session, self.quick, self.case(), &mut self.progress())?;
         self.finish(&report, &hertz::text(&report), |dir| {
@@ -166,7 +166,7 @@ impl Task<'_> {
     }
 
     fn scaling(&self, petsc: &[String]) -> Result<()> {
-        let settings = scaling::Settings::from_options(self.session, self.quick, petsc)?;
+        let settings = scaling::ScalingSettings::from_options(self.session, self.quick, petsc)?;
         let mut progress = self.progress();
         let report = scaling::run(self.session, &settings, self.case(), &mut progress)?;
         self.finish(&report, &scaling::text(&report), |dir| {

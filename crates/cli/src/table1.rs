@@ -5,7 +5,7 @@ use super::first_rank::on_first_rank;
 use super::solve::not_converged;
 use base::{Error, Result};
 use fetifeti::settings::{Adaptive, MethodSettings, PcType};
-use fetifeti::solution::Facts;
+use fetifeti::solution::SetUpSummary;
 use fetifeti::FetiFeti;
 use petsc::Session;
 use report::destination::Destination;
@@ -73,7 +73,7 @@ fn side(
     paper: Option<PaperSide>,
     stopped: &mut Option<Error>,
 ) -> Result<Table1Side> {
-    let mut run = |pc| -> Result<(Facts, PcResult)> {
+    let mut run = |pc| -> Result<(SetUpSummary, PcResult)> {
         let substructures = distribution::substructures(session, scene)?;
         // The paper's method without additions.
         let settings = MethodSettings::default()

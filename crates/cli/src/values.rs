@@ -15,7 +15,7 @@ use scene::assembly::{internal_force, SubdomainMesh};
 use scene::{Scene, SteppedMesh};
 
 /// Values at all nodes of every body, C components each, on rank 0; nothing on the other ranks.
-pub(super) struct Values {
+pub(super) struct NodalValues {
     by_body: Vec<Vec<f64>>,
     components: usize,
 }
@@ -29,7 +29,7 @@ struct NodeForce {
     force: [f64; 3],
 }
 
-impl Values {
+impl NodalValues {
     /// The displacements of a solution at load step `step`. Collective.
     pub fn displacements(
         session: &Session,
@@ -37,10 +37,10 @@ impl Values {
         solver: &FetiFeti,
         solution: &Solution,
         step: usize,
-    ) -> Result<Values> {
+    ) -> Result<NodalValues> {
         let of = |_: &SubdomainMesh, nodal: Vec<f64>| nodal;
         let put = |to: &mut f64, u: f64| *to = u;
-        Values::gather(session, scene, solver, (solution, step), &of, &put)
+        NodalValues::gather(session, scene, solver, (solution, step), &of, &put)
     }
 
     /// The forces that act on the nodes from outside, as CalculiX prints them (RF): K u without the forces of contact.
@@ -50,11 +50,11 @@ impl Values {
         scene: &Scene,
         solver: &FetiFeti,
         course: &Course,
-    ) -> Result<Values> {
+    ) -> Result<NodalValues> {
         let add = |to: &mut f64, force: f64| *to += force;
         let of = |mesh: &SubdomainMesh, nodal: Vec<f64>| internal_force(mesh, &nodal);
         let solved = (&course.solution, course.step);
-        let mut all = Values::gather(session, scene, solver, solved, &of, &add)?;
+        let mut all = NodalValues::gather(session, scene, solver, solved, &of, &add)?;
         // Rows between sides whose nodes do not match have forces at many nodes.
         let mut outgoing = vec![Vec::new(); session.size()];
         RowForces::new(session, scene)?.each(course.solution.rows(), |row, _, at, force| {
@@ -79,7 +79,7 @@ impl Values {
         (solution, step): (&Solution, usize),
         of: &dyn Fn(&SubdomainMesh, Vec<f64>) -> Vec<f64>,
         put: &dyn Fn(&mut f64, f64),
-    ) -> Result<Values> {
+    ) -> Result<NodalValues> {
         let scale = scene.prescribed_factor(step);
         let local = solver.problem().local.iter().map(|sub| sub.index);
         let nodal = local.clone().zip(&solution.u).map(|(index, u)| {
@@ -108,7 +108,7 @@ impl Values {
                 to.zip(part).for_each(|(to, &value)| put(to, value));
             }
         }
-        Ok(Values {
+        Ok(NodalValues {
             by_body,
             components: c,
         })

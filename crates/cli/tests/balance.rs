@@ -11,8 +11,8 @@ fn scene() -> Scene {
 }
 
 /// A load of 2 downwards at the middle of the right side, a reaction at the left side with its moment, and `springs`.
-fn sums(springs: f64) -> Sums {
-    let mut sums = Sums::default();
+fn sums(springs: f64) -> ForceSums {
+    let mut sums = ForceSums::default();
     sums.load.add([0.5, 0.0, 0.0], [0.0, -2.0, 0.0]);
     sums.springs.add([0.0, -0.5, 0.0], [0.0, springs, 0.0]);
     sums.reaction.add([-0.5, 0.5, 0.0], [-1.5, 1.5, 0.0]);
@@ -25,13 +25,15 @@ fn sums(springs: f64) -> Sums {
 fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
     let scene = scene();
     let body = &scene.bodies[0];
-    let error = Error {
+    let error = IterationError {
         input: 0.0,
         free: Vec::new(),
         relative: 1e-6,
         energy: 0.0,
     };
-    let of = |sums: &Sums, error: &Error| balance(&scene, body, sums, (false, true, false), error);
+    let of = |sums: &ForceSums, error: &IterationError| {
+        body_balance(&scene, body, sums, (false, true, false), error)
+    };
     let good = of(&sums(0.5), &error);
     assert!(good.beyond < 1e-6, "{}", good.beyond);
     assert!(good.record.imbalance < 1e-15);
@@ -46,7 +48,7 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
     // The error of the iteration explains it where the body is stiff.
     let mut stiff = sums(0.4);
     stiff.resistance[1] = 1e6;
-    let loose = Error {
+    let loose = IterationError {
         energy: 1e-3,
         free: Vec::new(),
         ..error

@@ -24,7 +24,7 @@ fn said(line: &str) -> String {
 
 #[test]
 fn the_definition_is_sound() {
-    Line::command().debug_assert();
+    CommandLine::command().debug_assert();
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::*;
 
 #[test]
 fn the_line_says_how_much_is_left() {
-    let search = Search {
+    let search = EigenSearch {
         largest: false,
         restarts: 12,
         residual: 1e-2,
@@ -19,7 +19,7 @@ fn the_line_says_how_much_is_left() {
     );
     // Nothing is known before the residual falls.
     for residual in [1.0, 7.0, f64::NAN, 0.0] {
-        let early = Search { residual, ..search };
+        let early = EigenSearch { residual, ..search };
         assert!(!line(&early).contains("left"), "{}", line(&early));
     }
 }

@@ -3,7 +3,7 @@
 //! Blanks count nowhere, the case of letters only in names of files. Lines that begin with `**` are comments. A
 //! keyword line that ends with a comma goes on in the next line if that line has a parameter.
 
-use super::place::{Files, Place};
+use super::deck_line::{DeckLine, Files};
 use base::{Error, Result};
 use std::ops::Range;
 
@@ -26,14 +26,14 @@ pub(super) struct Param {
 pub(super) struct Card {
     /// In capitals, without the asterisk and without blanks.
     pub keyword: String,
-    pub place: Place,
+    pub place: DeckLine,
     pub params: Vec<Param>,
     /// Its data lines, as places among the lines of the deck.
     data: Range<usize>,
 }
 
 impl Card {
-    pub fn new(keyword: &str, place: Place, params: Vec<Param>, data: Range<usize>) -> Card {
+    pub fn new(keyword: &str, place: DeckLine, params: Vec<Param>, data: Range<usize>) -> Card {
         Card {
             keyword: keyword.into(),
             place,
@@ -55,8 +55,8 @@ impl Card {
 
 /// A line that is neither empty nor a comment.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
-    place: Place,
+pub(super) struct SourceLine {
+    place: DeckLine,
     /// The text in which it is: that of its file, or one that was made of it.
     text: u32,
     bytes: Range<usize>,
@@ -67,7 +67,7 @@ pub(super) struct Line {
 pub(super) struct Cards {
     pub files: Files,
     texts: Vec<String>,
-    lines: Vec<Line>,
+    lines: Vec<SourceLine>,
     pub cards: Vec<Card>,
     /// One unit in the last digit of coordinates that were written otherwise than they stand here; 0 if there are none.
     pub resolution: f64,
@@ -75,7 +75,7 @@ pub(super) struct Cards {
 
 /// The cards and lines that take the place of the cards of a deck.
 pub(super) struct Flattened {
-    pub lines: Vec<Line>,
+    pub lines: Vec<SourceLine>,
     /// The text in which the lines are.
     pub text: String,
     pub cards: Vec<Card>,
@@ -84,8 +84,8 @@ pub(super) struct Flattened {
 
 /// A data line, cut at its commas.
 #[derive(Debug, Clone)]
-pub(super) struct Row<'a> {
-    pub place: Place,
+pub(super) struct DataLine<'a> {
+    pub place: DeckLine,
     pub fields: Vec<&'a str>,
 }
 
@@ -114,19 +114,19 @@ impl Cards {
     }
 
     /// The data lines of `card`.
-    pub fn rows<'a>(&'a self, card: &Card) -> impl Iterator<Item = Row<'a>> + 'a {
+    pub fn rows<'a>(&'a self, card: &Card) -> impl Iterator<Item = DataLine<'a>> + 'a {
         card.data.clone().map(|l| self.row(l))
     }
 
     /// Line `l`, for cards that are [`rewritten`](Self::rewritten).
-    pub fn line_of(&self, l: usize) -> Line {
+    pub fn line_of(&self, l: usize) -> SourceLine {
         self.lines[l].clone()
     }
 
     /// A line of the text of cards that are rewritten, in the place of one at `place`.
-    pub fn new_line(&self, place: Place, bytes: Range<usize>) -> Line {
+    pub fn new_line(&self, place: DeckLine, bytes: Range<usize>) -> SourceLine {
         let text = self.texts.len() as u32;
-        Line { place, text, bytes }
+        SourceLine { place, text, bytes }
     }
 
     /// Other cards in the place of these, with their lines, and the text of those that are new.
@@ -156,7 +156,7 @@ impl Cards {
             *number = number.checked_add(1).ok_or_else(|| {
                 Error::input(format!("{} has too many lines", self.files.0[*file]))
             })?;
-            let place = Place {
+            let place = DeckLine {
                 file: *file as u32,
                 line: *number,
             };
@@ -190,7 +190,7 @@ impl Cards {
                     continue;
                 }
             }
-            self.lines.push(Line {
+            self.lines.push(SourceLine {
                 place,
                 text: place.file,
                 bytes: from..from + trimmed.len(),
@@ -200,7 +200,7 @@ impl Cards {
     }
 
     /// The file that an *INCLUDE line names.
-    fn included(&self, line: &str, place: Place) -> Result<String> {
+    fn included(&self, line: &str, place: DeckLine) -> Result<String> {
         let value = line
             .split(',')
             .skip(1)
@@ -254,12 +254,12 @@ impl Cards {
     }
 
     /// Data line `l`, without the empty fields at its end.
-    pub fn row(&self, l: usize) -> Row<'_> {
+    pub fn row(&self, l: usize) -> DataLine<'_> {
         let mut fields: Vec<&str> = self.line(l).split(',').map(str::trim).collect();
         while fields.last().is_some_and(|f| f.is_empty()) {
             fields.pop();
         }
-        Row {
+        DataLine {
             place: self.lines[l].place,
             fields,
         }

@@ -5,9 +5,9 @@ use super::step::{Printed, Totals};
 use base::linalg::vec3::dot;
 use std::fmt::Write;
 
-/// The quantity in a [`Table`].
+/// The quantity in a [`DatTable`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum DatQuantity {
     /// Displacements (U).
     Displacement,
     /// Forces (RF).
@@ -18,9 +18,9 @@ pub enum Quantity {
 
 /// A table of a `.dat` file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct DatTable {
     /// The quantity in the table.
-    pub quantity: Quantity,
+    pub quantity: DatQuantity,
     /// The node set, in capitals.
     pub set: String,
     /// The total time.
@@ -29,7 +29,7 @@ pub struct Table {
     pub rows: Vec<TableRow>,
 }
 
-/// A row of a [`Table`].
+/// A row of a [`DatTable`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableRow {
     /// The number of the node.
@@ -40,26 +40,26 @@ pub struct TableRow {
     pub local: bool,
 }
 
-impl Quantity {
-    const ALL: [Quantity; 3] = [
-        Quantity::Displacement,
-        Quantity::Force,
-        Quantity::TotalForce,
+impl DatQuantity {
+    const ALL: [DatQuantity; 3] = [
+        DatQuantity::Displacement,
+        DatQuantity::Force,
+        DatQuantity::TotalForce,
     ];
 
     /// The beginning of the title of its tables.
     const fn title(self) -> &'static str {
         match self {
-            Quantity::Displacement => "displacements (vx,vy,vz)",
-            Quantity::Force => "forces (fx,fy,fz)",
-            Quantity::TotalForce => "total force (fx,fy,fz)",
+            DatQuantity::Displacement => "displacements (vx,vy,vz)",
+            DatQuantity::Force => "forces (fx,fy,fz)",
+            DatQuantity::TotalForce => "total force (fx,fy,fz)",
         }
     }
 }
 
 /// The tables of displacements and forces of a `.dat` file; others are passed over.
-pub fn read_dat(text: &str) -> Vec<Table> {
-    let mut tables: Vec<Table> = Vec::new();
+pub fn read_dat(text: &str) -> Vec<DatTable> {
+    let mut tables: Vec<DatTable> = Vec::new();
     let mut open = false;
     for line in text.lines() {
         if line.trim().is_empty() {
@@ -83,16 +83,16 @@ pub fn read_dat(text: &str) -> Vec<Table> {
 }
 
 /// The empty table of a line such as ` displacements (vx,vy,vz) for set NALL and time  0.1000000E+01`.
-fn title_of(line: &str) -> Option<Table> {
+fn title_of(line: &str) -> Option<DatTable> {
     let line = line.trim();
-    let quantity = Quantity::ALL
+    let quantity = DatQuantity::ALL
         .into_iter()
         .find(|q| line.starts_with(q.title()))?;
     let (set, time) = line[quantity.title().len()..]
         .trim_start()
         .strip_prefix("for set ")?
         .rsplit_once(" and time ")?;
-    Some(Table {
+    Some(DatTable {
         quantity,
         set: set.trim().to_string(),
         time: time.trim().parse().ok()?,
@@ -101,10 +101,10 @@ fn title_of(line: &str) -> Option<Table> {
 }
 
 /// A row of numbers; `L`, for a vector in the system of its node, may follow.
-fn row_of(line: &str, table: Option<&Table>) -> Option<TableRow> {
+fn row_of(line: &str, table: Option<&DatTable>) -> Option<TableRow> {
     let mut words = line.split_whitespace();
     let id = match table?.quantity {
-        Quantity::TotalForce => 0,
+        DatQuantity::TotalForce => 0,
         _ => words.next()?.parse().ok()?,
     };
     let mut vector = [0.0; 3];
@@ -137,12 +137,12 @@ impl Deck {
         step: usize,
         displacements: &[[f64; 3]],
         forces: &[[f64; 3]],
-    ) -> Vec<Vec<Table>> {
+    ) -> Vec<Vec<DatTable>> {
         let step = &self.steps[step];
         let mut all = Vec::new();
         for print in &step.prints {
             let mut tables = Vec::new();
-            let table = |quantity, rows| Table {
+            let table = |quantity, rows| DatTable {
                 quantity,
                 set: print.nset.clone(),
                 time: step.time,
@@ -164,11 +164,11 @@ impl Deck {
             for printed in &print.printed {
                 match printed {
                     Printed::Displacement => {
-                        tables.push(table(Quantity::Displacement, rows(displacements)));
+                        tables.push(table(DatQuantity::Displacement, rows(displacements)));
                     }
                     Printed::Force => {
                         if print.totals != Totals::Only {
-                            tables.push(table(Quantity::Force, rows(forces)));
+                            tables.push(table(DatQuantity::Force, rows(forces)));
                         }
                         if print.totals != Totals::No {
                             let at =
@@ -179,7 +179,7 @@ impl Deck {
                                 vector,
                                 local: false,
                             };
-                            tables.push(table(Quantity::TotalForce, vec![total]));
+                            tables.push(table(DatQuantity::TotalForce, vec![total]));
                         }
                     }
                 }
@@ -191,7 +191,7 @@ impl Deck {
 }
 
 /// The text that CalculiX prints for `tables`.
-pub fn write_dat(tables: &[Table]) -> String {
+pub fn write_dat(tables: &[DatTable]) -> String {
     let mut text = String::new();
     for table in tables {
         let title = table.quantity.title();
@@ -204,7 +204,7 @@ pub fn write_dat(tables: &[Table]) -> String {
         );
         for row in &table.rows {
             let _ = match table.quantity {
-                Quantity::TotalForce => write!(text, "      "),
+                DatQuantity::TotalForce => write!(text, "      "),
                 _ => write!(text, "{:>10}", row.id),
             };
             for x in row.vector {

@@ -4,7 +4,7 @@ use elements::kind::CellKind;
 
 /// The mechanical model of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Model {
+pub enum ElementModel {
     /// A solid.
     Solid,
     /// A plane body without strain across.
@@ -48,8 +48,8 @@ macro_rules! elements {
             }
 
             /// The mechanical model of this type.
-            pub const fn model(self) -> Model {
-                match self { $(ElementType::$name => Model::$model),* }
+            pub const fn model(self) -> ElementModel {
+                match self { $(ElementType::$name => ElementModel::$model),* }
             }
 
             /// How it is integrated.

@@ -1,6 +1,6 @@
 //! Joints between the bodies of a deck: ties, contact pairs, surface interactions.
 
-use super::place::{Note, Place};
+use super::deck_line::{DeckLine, Note};
 
 /// A surface that a tie or a contact pair names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct Tie {
     /// Whether tied nodes are moved onto the master before.
     pub adjust: bool,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// Which nodes of the slave a contact pair moves onto the master before the first step.
@@ -73,7 +73,7 @@ pub struct ContactPair {
     /// The gap that replaces the geometric one (*CLEARANCE); negative for an overclosure.
     pub clearance: Option<f64>,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// The pressure of contact as a function of the overclosure.
@@ -110,7 +110,7 @@ pub struct Interaction {
     /// Its *SURFACE BEHAVIOR; hard contact if it has none.
     pub overclosure: Overclosure,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
     /// Why no contact pair may have it, such as friction.
     pub(super) refused: Option<Note>,
 }

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 /// The treatment of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum KeywordTreatment {
     /// It is read.
     Read,
     /// It changes no displacement; why.
@@ -24,29 +24,31 @@ pub enum Verdict {
     InInteraction(&'static str),
 }
 
-use Verdict::{Ignored, InInteraction, InMaterial, Read, Refused, RefusedMesh};
+use KeywordTreatment::{Ignored, InInteraction, InMaterial, Read, Refused, RefusedMesh};
 
-const OUTPUT: Verdict = Ignored("it asks for output that is not written here");
-const HEAT: Verdict = Refused("it is a problem of heat, and only elasticity is solved");
-const HEAT_ONLY: Verdict = Ignored("it is for problems of heat");
-const FLUID: Verdict = Refused("it is a problem of fluids, and only elasticity is solved");
-const FLUID_ONLY: Verdict = Ignored("it is for fluids");
-const WAVES: Verdict = Refused("it depends on time or frequency, and only static steps are solved");
-const ELECTRIC: Verdict =
+const OUTPUT: KeywordTreatment = Ignored("it asks for output that is not written here");
+const HEAT: KeywordTreatment = Refused("it is a problem of heat, and only elasticity is solved");
+const HEAT_ONLY: KeywordTreatment = Ignored("it is for problems of heat");
+const FLUID: KeywordTreatment = Refused("it is a problem of fluids, and only elasticity is solved");
+const FLUID_ONLY: KeywordTreatment = Ignored("it is for fluids");
+const WAVES: KeywordTreatment =
+    Refused("it depends on time or frequency, and only static steps are solved");
+const ELECTRIC: KeywordTreatment =
     Refused("it is a problem of electromagnetism, and only elasticity is solved");
-const DESIGN: Verdict =
+const DESIGN: KeywordTreatment =
     Refused("it asks for sensitivities or another design, and only the displacement is solved for");
-const SLENDER: Verdict = Refused("beams, shells, membranes and trusses are not supported");
-const DISCRETE: Verdict = Refused("springs, dashpots, gaps and point masses are not supported");
-const COUPLED: Verdict =
+const SLENDER: KeywordTreatment = Refused("beams, shells, membranes and trusses are not supported");
+const DISCRETE: KeywordTreatment =
+    Refused("springs, dashpots, gaps and point masses are not supported");
+const COUPLED: KeywordTreatment =
     Refused("rigid and averaged couplings of nodes are not supported; write them as *EQUATION");
-const NONLINEAR: Verdict = InMaterial("only isotropic linear elasticity is supported");
-const CHANGES: Verdict = Refused("the model may not change between steps");
-const GENERATED: Verdict =
+const NONLINEAR: KeywordTreatment = InMaterial("only isotropic linear elasticity is supported");
+const CHANGES: KeywordTreatment = Refused("the model may not change between steps");
+const GENERATED: KeywordTreatment =
     RefusedMesh("nodes and elements must be written out; generating them is not supported");
 
 /// The verdict on every keyword that is known.
-pub const KEYWORDS: &[(&str, Verdict)] = &[
+pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("ACOUSTIC FLOW VELOCITY", WAVES),
     ("AMPLITUDE", Read),
     ("ASSEMBLY", Read),
@@ -336,7 +338,7 @@ pub const KEYWORDS: &[(&str, Verdict)] = &[
 ];
 
 /// The keyword as it is written, with blanks, and what becomes of it; `squeezed` has no blanks.
-pub(super) fn verdict(squeezed: &str) -> Option<(&'static str, Verdict)> {
+pub(super) fn verdict(squeezed: &str) -> Option<(&'static str, KeywordTreatment)> {
     static BY_NAME: OnceLock<HashMap<String, usize>> = OnceLock::new();
     let by_name = BY_NAME.get_or_init(|| {
         let names = KEYWORDS.iter().map(|(name, _)| squeeze(name));

@@ -7,36 +7,36 @@
 mod assembly;
 mod cards;
 mod dat;
+mod deck_line;
 mod element;
 mod joint;
 mod keywords;
 mod model;
 mod numbers;
-mod place;
 mod reader;
 mod step;
 
-pub use dat::{read_dat, write_dat, Quantity, Table, TableRow};
-pub use element::{ElementType, Integration, Model};
+pub use dat::{read_dat, write_dat, DatQuantity, DatTable, TableRow};
+pub use deck_line::{DeckLine, Files, Note};
+pub use element::{ElementModel, ElementType, Integration};
 pub use joint::{Adjust, ContactKind, ContactPair, Interaction, Overclosure, SurfaceName, Tie};
-pub use keywords::{Verdict, KEYWORDS};
-pub use model::{Deck, Equation, Material, Section, Term, Transform};
-pub use place::{Files, Note, Place};
+pub use keywords::{KeywordTreatment, KEYWORDS};
+pub use model::{Deck, DeckEquation, DeckMaterial, Section, Term, Transform};
 pub use step::{
-    BodyLoad, BodyLoadKind, FieldRequest, NodeForce, NodePrint, Pressure, Printed, Step, Support,
-    Totals,
+    BodyLoad, BodyLoadKind, DeckStep, FieldRequest, NodeForce, NodePrint, Pressure, Printed,
+    Support, Totals,
 };
 
 use base::Result;
 use cards::Cards;
 use mesh::file::MeshFile;
-use reader::Reader;
+use reader::DeckReader;
 
 /// Reads the deck `text`; `name` is its name in messages, and `include` reads the files that it includes, whose names
 /// it gets as they are written.
 pub fn read(name: &str, text: &[u8], include: &dyn Fn(&str) -> Result<Vec<u8>>) -> Result<Deck> {
     let (cards, notes) = assembly::flatten(Cards::new(name, text, include)?)?;
-    let mut deck = Reader::new(&cards, true).deck()?;
+    let mut deck = DeckReader::new(&cards, true).deck()?;
     deck.placed = notes;
     Ok(deck)
 }
@@ -48,7 +48,7 @@ pub fn read_mesh(
     include: &dyn Fn(&str) -> Result<Vec<u8>>,
 ) -> Result<MeshFile> {
     let (cards, _) = assembly::flatten(Cards::new(name, text, include)?)?;
-    Reader::new(&cards, false).mesh()
+    DeckReader::new(&cards, false).mesh()
 }
 
 #[cfg(test)]

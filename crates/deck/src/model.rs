@@ -1,9 +1,9 @@
 //! The contents of a deck, checked: every name is resolved to places, every number is finite.
 
-use super::element::{ElementType, Model};
+use super::deck_line::{DeckLine, Files, Note};
+use super::element::{ElementModel, ElementType};
 use super::joint::{ContactPair, Interaction, Tie};
-use super::place::{Files, Note, Place};
-use super::step::Step;
+use super::step::DeckStep;
 use base::linalg::vec3::{cross, dot, minus, norm};
 use mesh::clockwise::side_backwards;
 use mesh::MeshFile;
@@ -22,13 +22,13 @@ pub struct Deck {
     /// The sections; a later one wins where element sets overlap.
     pub sections: Vec<Section>,
     /// The materials.
-    pub materials: Vec<Material>,
+    pub materials: Vec<DeckMaterial>,
     /// The systems of coordinates of nodes.
     pub transforms: Vec<Transform>,
     /// The system of each node that has one, as (node, place in `transforms`), in increasing order of nodes.
     pub node_transform: Vec<(u32, u32)>,
     /// The equations, those of *MPC among them.
-    pub equations: Vec<Equation>,
+    pub equations: Vec<DeckEquation>,
     /// One unit in the last digit of the factors of equations, as the deck writes them; 0 where they are exact.
     pub factor_resolution: f64,
     /// The ties.
@@ -38,7 +38,7 @@ pub struct Deck {
     /// The surface interactions.
     pub interactions: Vec<Interaction>,
     /// The steps, each with everything that holds at its end.
-    pub steps: Vec<Step>,
+    pub steps: Vec<DeckStep>,
     /// Notes on keywords that were ignored since they change no displacement.
     pub ignored: Vec<Note>,
     /// Notes on keywords that are solved as something else than CalculiX solves them.
@@ -57,12 +57,12 @@ pub struct Section {
     /// The thickness of plane elements, 1 if none is given.
     pub thickness: f64,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// A *MATERIAL.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Material {
+pub struct DeckMaterial {
     /// Its name, in capitals.
     pub name: String,
     /// Young's modulus and Poisson's ratio. Materials of cells have them.
@@ -70,7 +70,7 @@ pub struct Material {
     /// The mass per volume.
     pub density: Option<f64>,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
     /// Why no cell may have it.
     pub(super) refused: Option<Note>,
 }
@@ -85,19 +85,19 @@ pub struct Transform {
     /// A point of the plane of the first two axes, or another point of the axis of the cylinder.
     pub b: [f64; 3],
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// A linear equation between displacements, with right-hand side 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Equation {
+pub struct DeckEquation {
     /// Its terms. CalculiX eliminates the first.
     pub terms: Vec<Term>,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
-/// A term of an [`Equation`].
+/// A term of a [`DeckEquation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
     /// The node.
@@ -111,8 +111,10 @@ pub struct Term {
 impl Deck {
     /// The mechanical model of the elements. Decks are either of solids, plane or axisymmetric; plane decks may mix
     /// plane strain and plane stress, and then this is the model of the first element.
-    pub fn model(&self) -> Model {
-        self.elements.first().map_or(Model::Solid, |e| e.model())
+    pub fn model(&self) -> ElementModel {
+        self.elements
+            .first()
+            .map_or(ElementModel::Solid, |e| e.model())
     }
 
     /// 2 or 3.

@@ -1,7 +1,7 @@
 //! Numbers as Fortran writes them, and fields of data lines.
 
-use super::cards::Row;
-use super::place::Files;
+use super::cards::DataLine;
+use super::deck_line::Files;
 use base::Result;
 
 /// A finite number: `1`, `-1.5`, `.5`, `1.e5`, `1.D+5`, `1.5+3` (exponents need no letter).
@@ -43,7 +43,7 @@ pub(super) fn is_whole(text: &str) -> bool {
     !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit())
 }
 
-impl Row<'_> {
+impl DataLine<'_> {
     /// Field `k`, empty if there is none.
     pub fn field(&self, k: usize) -> &str {
         self.fields.get(k).copied().unwrap_or("")

@@ -1,12 +1,12 @@
 //! The steps of a deck: supports, loads and what is asked for.
 
-use super::place::Place;
+use super::deck_line::DeckLine;
 
 /// A *STEP, with everything that holds at its end: amplitudes are evaluated, and what earlier steps leave is included.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Step {
+pub struct DeckStep {
     /// Where it begins.
-    pub place: Place,
+    pub place: DeckLine,
     /// How long it takes.
     pub duration: f64,
     /// The total time at its end, as CalculiX prints it.
@@ -35,7 +35,7 @@ pub struct Support {
     /// The displacement.
     pub value: f64,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// A force at a node.
@@ -48,7 +48,7 @@ pub struct NodeForce {
     /// The force; on axisymmetric bodies that on the whole circumference.
     pub value: f64,
     /// Where it stands: the first of those that were added.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// A pressure on a side, against the outer normal.
@@ -61,7 +61,7 @@ pub struct Pressure {
     /// The pressure.
     pub value: f64,
     /// Where it stands: the first of those that were added.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// A force on cells by mass.
@@ -72,7 +72,7 @@ pub struct BodyLoad {
     /// The kind of the load.
     pub kind: BodyLoadKind,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// The kind of a [`BodyLoad`].
@@ -126,7 +126,7 @@ pub struct NodePrint {
     /// Whether vectors are printed in the global system where nodes have one of their own.
     pub global: bool,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }
 
 /// Fields that are to be written to a file of results.
@@ -137,5 +137,5 @@ pub struct FieldRequest {
     /// The names of the fields, in capitals.
     pub fields: Vec<String>,
     /// Where it stands.
-    pub place: Place,
+    pub place: DeckLine,
 }

@@ -1,7 +1,7 @@
 use crate::{read, read_mesh, Deck};
 use base::Error;
 use base::Result;
-use mesh::{Group, Members, MeshFile};
+use mesh::{Members, MeshFile, MeshGroup};
 
 fn deck(text: &str) -> Result<Deck> {
     read("a.inp", text.as_bytes(), &|_| Err(Error::input("no files")))
@@ -63,7 +63,7 @@ I-1.2, 1, 1., A.I-2.S, 1, -1.
 ";
 
 fn members<'a>(mesh: &'a MeshFile, name: &str) -> &'a Members {
-    let named = |g: &&Group| g.name == name;
+    let named = |g: &&MeshGroup| g.name == name;
     &mesh.groups.iter().find(named).expect(name).members
 }
 
@@ -99,7 +99,7 @@ fn instances_have_their_own_nodes_and_names() {
         (&second, &second)
     );
     // Both instances have the others: there is no short name.
-    let short = |g: &Group| ["S", "T", "E", "LOW"].contains(&g.name.as_str());
+    let short = |g: &MeshGroup| ["S", "T", "E", "LOW"].contains(&g.name.as_str());
     assert!(!mesh.groups.iter().any(short));
 }
 
@@ -118,7 +118,7 @@ fn a_single_instance_has_short_names() {
 #[test]
 fn equations_and_systems_are_those_of_each_instance() {
     let deck = deck(&format!("{PART}{ASSEMBLY}{REST}")).expect("a deck");
-    let nodes = |e: &crate::Equation| e.terms.iter().map(|t| t.node).collect::<Vec<u32>>();
+    let nodes = |e: &crate::DeckEquation| e.terms.iter().map(|t| t.node).collect::<Vec<u32>>();
     let all: Vec<Vec<u32>> = deck.equations.iter().map(nodes).collect();
     // S has two nodes, so that each card makes two equations.
     assert_eq!(all, [[3, 0], [3, 2], [7, 4], [7, 6], [1, 4], [1, 6]]);

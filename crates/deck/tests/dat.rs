@@ -6,8 +6,9 @@ const BLOCK: &str = include_str!("block.dat");
 #[test]
 fn tables_of_calculix_are_read_and_written_byte_for_byte() {
     let tables = read_dat(BLOCK);
-    let sizes: Vec<(Quantity, usize)> = tables.iter().map(|t| (t.quantity, t.rows.len())).collect();
-    use Quantity::{Displacement, Force, TotalForce};
+    let sizes: Vec<(DatQuantity, usize)> =
+        tables.iter().map(|t| (t.quantity, t.rows.len())).collect();
+    use DatQuantity::{Displacement, Force, TotalForce};
     let two = [
         (Displacement, 10),
         (Force, 10),
@@ -34,7 +35,7 @@ fn tables_of_a_deck_are_those_of_calculix() {
     let mut seen = 0;
     for step in 0..deck.steps.len() {
         let time = deck.steps[step].time;
-        let at_time: Vec<&Table> = printed.iter().filter(|t| t.time == time).collect();
+        let at_time: Vec<&DatTable> = printed.iter().filter(|t| t.time == time).collect();
         // From the tables of all nodes back to the global system.
         let global = |quantity| {
             let mut all = vec![[0.0; 3]; deck.mesh.points.len()];
@@ -53,8 +54,8 @@ fn tables_of_a_deck_are_those_of_calculix() {
         };
         let tables = deck.tables(
             step,
-            &global(Quantity::Displacement),
-            &global(Quantity::Force),
+            &global(DatQuantity::Displacement),
+            &global(DatQuantity::Force),
         );
         for table in tables.iter().flatten() {
             let same = at_time
@@ -62,7 +63,7 @@ fn tables_of_a_deck_are_those_of_calculix() {
                 .find(|t| t.quantity == table.quantity && t.set == table.set);
             let same = same.expect("a table of CalculiX");
             assert_eq!(table.rows.len(), same.rows.len());
-            if table.quantity == Quantity::TotalForce && step == 2 {
+            if table.quantity == DatQuantity::TotalForce && step == 2 {
                 continue; // The third step prints no forces of single nodes.
             }
             for (ours, theirs) in table.rows.iter().zip(&same.rows) {

@@ -1,7 +1,7 @@
 use super::*;
 use base::Error;
 use elements::kind::CellKind;
-use mesh::{Group, Members};
+use mesh::{Members, MeshGroup};
 
 fn read_text(text: &str) -> Result<Deck> {
     read("a.inp", text.as_bytes(), &|_| Err(Error::input("no files")))
@@ -16,10 +16,10 @@ fn a_deck_is_read_with_its_names_resolved() {
     assert_eq!(deck.mesh.points[6], [1.0, 1.0, 1.0]);
     assert_eq!(deck.mesh.cells.nodes(0), [0, 1, 2, 3, 4, 5, 6, 7]);
     assert_eq!(deck.elements, [ElementType::C3D8]);
-    assert_eq!((deck.model(), deck.dim()), (Model::Solid, 3));
+    assert_eq!((deck.model(), deck.dim()), (ElementModel::Solid, 3));
     let names: Vec<&str> = deck.mesh.groups.iter().map(|g| g.name.as_str()).collect();
     assert_eq!(names, ["N", "E", "LOC", "FIX", "REV"]);
-    let loc = Group {
+    let loc = MeshGroup {
         name: "LOC".into(),
         members: Members::Nodes(vec![5, 6]),
     };

@@ -10,10 +10,10 @@ fn names_tell_kinds_and_integration() {
         let nodes: String = rest.chars().take_while(char::is_ascii_digit).collect();
         assert_eq!(nodes.parse(), Ok(element.kind().nodes()), "{name}");
         let model = match family {
-            "C3D" => Model::Solid,
-            "CPE" => Model::PlaneStrain,
-            "CPS" => Model::PlaneStress,
-            _ => Model::Axisymmetric,
+            "C3D" => ElementModel::Solid,
+            "CPE" => ElementModel::PlaneStrain,
+            "CPS" => ElementModel::PlaneStress,
+            _ => ElementModel::Axisymmetric,
         };
         assert_eq!(element.model(), model, "{name}");
         assert_eq!(element.kind().dim(), if family == "C3D" { 3 } else { 2 });

@@ -8,7 +8,10 @@ fn keywords_are_there_once_and_found_by_their_names() {
     for &(name, kind) in KEYWORDS {
         assert_eq!(verdict(&squeeze(name)), Some((name, kind)));
     }
-    assert_eq!(verdict("NODEPRINT"), Some(("NODE PRINT", Verdict::Read)));
+    assert_eq!(
+        verdict("NODEPRINT"),
+        Some(("NODE PRINT", KeywordTreatment::Read))
+    );
     assert_eq!(verdict("NODES"), None);
 }
 
@@ -17,9 +20,11 @@ fn keywords_are_there_once_and_found_by_their_names() {
 fn reasons_are_parts_of_a_sentence() {
     for (name, kind) in KEYWORDS {
         let reason = match kind {
-            Verdict::Read => continue,
-            Verdict::Ignored(r) | Verdict::Refused(r) | Verdict::RefusedMesh(r) => r,
-            Verdict::InMaterial(r) | Verdict::InInteraction(r) => r,
+            KeywordTreatment::Read => continue,
+            KeywordTreatment::Ignored(r)
+            | KeywordTreatment::Refused(r)
+            | KeywordTreatment::RefusedMesh(r) => r,
+            KeywordTreatment::InMaterial(r) | KeywordTreatment::InInteraction(r) => r,
         };
         assert!(
             reason.len() > 10 && !reason.ends_with('.') && !reason.contains('\n'),

@@ -23,7 +23,7 @@ pub struct BoxMesh {
 
 /// The elements of one subdomain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Block {
+pub struct ElementBlock {
     /// Place of the subdomain in the body.
     pub place: [usize; 3],
     /// Its first element (and first node) in x, y and z.
@@ -32,7 +32,7 @@ pub struct Block {
     pub elements: [usize; 3],
 }
 
-impl Block {
+impl ElementBlock {
     /// Nodes in x, y and z.
     pub fn nodes(&self) -> [usize; 3] {
         self.elements.map(|n| n + 1)
@@ -109,11 +109,11 @@ impl BoxMesh {
     }
 
     /// The elements of subdomain `s`, in 0..n_subdomains.
-    pub fn block(&self, s: usize) -> Block {
+    pub fn block(&self, s: usize) -> ElementBlock {
         let elements = self.block_elements();
         let [sx, sy, _] = self.subdomains;
         let place = [s % sx, s / sx % sy, s / (sx * sy)];
-        Block {
+        ElementBlock {
             place,
             first: [0, 1, 2].map(|d| place[d] * elements[d]),
             elements,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::cells::Cells;
 use super::partition::{Adjacency, Interface, Sharing};
-use super::parts::Parts;
+use super::parts::MeshPartition;
 
 /// A part of the boundary of a mesh of cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub struct CellMesh {
     /// The named boundary groups, then the whole boundary, [`SKIN`].
     pub sides: Vec<SideGroup>,
     /// The partition into subdomains.
-    pub parts: Parts,
+    pub parts: MeshPartition,
     /// Which cells share sides, from the extraction of the mesh until it is cut.
     pub(super) adjacency: Option<Arc<Adjacency>>,
 }
@@ -66,7 +66,7 @@ impl CellMesh {
         });
         let of_cell = vec![0; cells.len()];
         let sharing = Sharing::new(&cells, &of_cell, 1, points.len());
-        let parts = Parts::new(of_cell, sharing, Interface::default());
+        let parts = MeshPartition::new(of_cell, sharing, Interface::default());
         CellMesh {
             dim,
             node_ids: (1..=points.len() as u64).collect(),
@@ -84,7 +84,7 @@ impl CellMesh {
     #[must_use]
     pub fn partitioned(mut self, of_cell: Vec<u32>, n: usize, shared: Interface) -> CellMesh {
         let sharing = Sharing::new(&self.cells, &of_cell, n, self.points.len());
-        self.parts = Parts::new(of_cell, sharing, shared);
+        self.parts = MeshPartition::new(of_cell, sharing, shared);
         self
     }
 

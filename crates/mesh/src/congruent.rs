@@ -15,16 +15,16 @@ const PLACED: f64 = 1e-6;
 /// Distances that are the same in copies, up to the digits of a file. They tell meshes that are no copies apart in
 /// less time than [`congruent`] takes.
 #[derive(Debug, Clone, Copy)]
-pub struct Outline {
+pub struct MeshFingerprint {
     /// The largest distance from the first node.
     reach: f64,
     /// The mean distances from the first node, one in the middle of the list, and the last.
     means: [f64; 3],
 }
 
-impl Outline {
+impl MeshFingerprint {
     /// The outline of a mesh with nodes.
-    pub fn new(mesh: &CellMesh) -> Outline {
+    pub fn new(mesh: &CellMesh) -> MeshFingerprint {
         let n = mesh.points.len();
         let distances = |from: usize| {
             mesh.points.iter().map(move |point| {
@@ -33,14 +33,14 @@ impl Outline {
                 norm(along)
             })
         };
-        Outline {
+        MeshFingerprint {
             reach: distances(0).fold(0.0, f64::max),
             means: [0, n / 2, n - 1].map(|from| distances(from).sum::<f64>() / n as f64),
         }
     }
 
     /// Whether meshes with these outlines may be copies of each other.
-    pub fn may_be(&self, other: &Outline) -> bool {
+    pub fn may_be(&self, other: &MeshFingerprint) -> bool {
         // Each end of a distance may be away by PLACED of the extent, which is less than twice the reach. The other
         // half is for rounding.
         let near = 8.0 * PLACED * self.reach;

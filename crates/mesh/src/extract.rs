@@ -160,7 +160,7 @@ impl<F: Borrow<MeshFile>> Extractor<F> {
             )));
         }
         let skin = adjacency.boundary.clone();
-        let sides = Sides::new(&cells, &skin);
+        let sides = SkinSides::new(&cells, &skin);
         let groups = self.members(chosen, own);
         let groups = groups
             .chunk_by(|a, b| a.group == b.group)
@@ -207,20 +207,20 @@ struct Member {
 }
 
 /// The sides on the skin of a mesh, by their corners.
-struct Sides<'a> {
+struct SkinSides<'a> {
     cells: &'a Cells,
     skin: &'a [(u32, u8)],
     by_corners: HashMap<[u32; CORNERS], (u32, u8)>,
 }
 
-impl<'a> Sides<'a> {
-    fn new(cells: &'a Cells, skin: &'a [(u32, u8)]) -> Sides<'a> {
+impl<'a> SkinSides<'a> {
+    fn new(cells: &'a Cells, skin: &'a [(u32, u8)]) -> SkinSides<'a> {
         let corners = |&(c, side): &(u32, u8)| {
             let (c, place) = (c as usize, usize::from(side));
             let n = cells.kind(c).sides()[place].kind.corners();
             (key(cells.side_nodes(c, place).take(n)), (c as u32, side))
         };
-        Sides {
+        SkinSides {
             cells,
             skin,
             by_corners: skin.iter().map(corners).collect(),

@@ -71,7 +71,7 @@ pub struct MeshFile {
     /// The number of each cell in the file.
     pub cell_ids: Vec<u64>,
     /// The named groups, in the order of the file.
-    pub groups: Vec<Group>,
+    pub groups: Vec<MeshGroup>,
 }
 
 impl MeshFile {
@@ -105,14 +105,14 @@ impl MeshFile {
 
 /// A named group of a mesh file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Group {
+pub struct MeshGroup {
     /// Its name; where the file numbers a group and does not name it, the number.
     pub name: String,
     /// The members of the group.
     pub members: Members,
 }
 
-/// The members of a [`Group`].
+/// The members of a [`MeshGroup`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Members {
     /// Cells of one dimension, as places in [`MeshFile::cells`]: a physical group, an ELSET.

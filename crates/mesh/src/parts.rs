@@ -5,7 +5,7 @@ use base::linalg::lists::Lists;
 
 /// A partition of a mesh of cells into subdomains.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Parts {
+pub struct MeshPartition {
     /// The subdomain of every cell.
     of_cell: Vec<u32>,
     cells: Lists,
@@ -21,9 +21,9 @@ pub struct Parts {
     beside: Lists,
 }
 
-impl Parts {
+impl MeshPartition {
     /// The partition, given the subdomain of every cell, and what the subdomains share.
-    pub fn new(of_cell: Vec<u32>, sharing: Sharing, shared: Interface) -> Parts {
+    pub fn new(of_cell: Vec<u32>, sharing: Sharing, shared: Interface) -> MeshPartition {
         let (n, n_nodes) = (sharing.n, sharing.n_nodes());
         let cells = Lists::of(n, of_cell.iter().zip(0..).map(|(&s, c)| (s as usize, c)));
         let nodes = (0..n_nodes as u32).flat_map(|k| {
@@ -52,7 +52,7 @@ impl Parts {
             sharers.iter().map(move |&s| (s as usize, e as u32))
         });
         let beside = Lists::of(n, beside);
-        Parts {
+        MeshPartition {
             of_cell,
             cells,
             nodes,

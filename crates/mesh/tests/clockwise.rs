@@ -1,7 +1,7 @@
 //! Unit tests of `crates/mesh/src/clockwise.rs`.
 
 use super::*;
-use crate::Group;
+use crate::MeshGroup;
 
 const KINDS: [CellKind; 5] = [
     CellKind::Triangle3,
@@ -50,7 +50,7 @@ fn mirrored_cells_are_turned_and_sides_keep_their_nodes() {
         let sides: Vec<(u32, u8)> = (0..2)
             .flat_map(|c| (0..kind.corners() as u8).map(move |s| (c, s)))
             .collect();
-        file.groups.push(Group {
+        file.groups.push(MeshGroup {
             name: "sides".into(),
             members: Members::Sides(sides.clone()),
         });

@@ -49,16 +49,16 @@ fn other_cells_on_the_same_points_are_no_copy() {
 #[test]
 fn outlines_tell_meshes_apart() {
     let original = kite(|p| p, false);
-    let outline = Outline::new(&original);
+    let outline = MeshFingerprint::new(&original);
     let copy = |[x, y, z]: [f64; 3]| [0.8 * y - 0.6 * x + 3.0, 0.6 * y + 0.8 * x, z];
     assert!(congruent(&original, &kite(copy, true)));
-    assert!(outline.may_be(&Outline::new(&kite(copy, true))));
+    assert!(outline.may_be(&MeshFingerprint::new(&kite(copy, true))));
     // Off by as much as a copy may be.
     let rough = |p: [f64; 3]| copy(p).map(|x| x + 0.7e-6 * (1e3 * x).sin());
     assert!(congruent(&original, &kite(rough, false)));
-    assert!(outline.may_be(&Outline::new(&kite(rough, false))));
+    assert!(outline.may_be(&MeshFingerprint::new(&kite(rough, false))));
     let sheared = |[x, y, z]: [f64; 3]| [x + 0.01 * y, y, z];
-    assert!(!outline.may_be(&Outline::new(&kite(sheared, false))));
+    assert!(!outline.may_be(&MeshFingerprint::new(&kite(sheared, false))));
     let longer = |p: [f64; 3]| p.map(|x| 1.001 * x);
-    assert!(!outline.may_be(&Outline::new(&kite(longer, false))));
+    assert!(!outline.may_be(&MeshFingerprint::new(&kite(longer, false))));
 }

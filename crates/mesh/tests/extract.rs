@@ -1,7 +1,7 @@
 //! Unit tests of `crates/mesh/src/extract.rs`.
 
 use super::*;
-use crate::Group;
+use crate::MeshGroup;
 use elements::kind::CellKind;
 
 /// A row of five unit squares, numbered from the right; neighbours share nodes. The square at the left is there three
@@ -26,7 +26,7 @@ fn file() -> MeshFile {
         file.cells.push(CellKind::Quad4, &[0, 2, 3, 1]);
     }
     file.cell_ids = (1..=file.cells.len() as u64).collect();
-    let group = |name: &str, members| Group {
+    let group = |name: &str, members| MeshGroup {
         name: name.into(),
         members,
     };

@@ -1,7 +1,7 @@
 //! Irregular messages during set-up: every rank sends every rank a list of records.
 //!
-//! Records are plain data ([`Pod`]) and travel as the bytes that they have in memory, in words of 32 bits. The iteration
-//! does not use this module: it uses PETSc's scatters, which are set up once.
+//! Records are plain data ([`Pod`]) and travel as the bytes that they have in memory, in words of 32 bits. The
+//! iteration does not use this module: it uses PETSc's scatters, which are set up once.
 
 use bytemuck::{cast_slice, pod_collect_to_vec, Pod};
 use mpi::collective::SystemOperation;

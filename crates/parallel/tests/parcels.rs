@@ -1,4 +1,4 @@
-//! Unit tests of `src/parcels.rs`.
+//! Unit tests of `crates/parallel/src/parcels.rs`.
 
 use super::*;
 

@@ -1,8 +1,8 @@
 //! Eigenvalue solvers (SLEPc).
 
+use super::eigen_search::EigenSearch;
 use super::error::{c_string, got, guard, rust_string};
 use super::handle::Handle;
-use super::search::Search;
 use super::{Comm, ConvergedReason, Ksp, Mat, Session, Vec};
 use base::Result;
 use petsc_sys as sys;
@@ -165,7 +165,7 @@ impl Eps {
     pub fn solve_settled(&self, when: Settled, which: Which) -> Result<Option<End>> {
         let (mut tolerance, mut most) = (0.0, 0);
         petsc!(EPSGetTolerances(self.raw(), &mut tolerance, &mut most))?;
-        let told = Told {
+        let told = MonitorContext {
             session: self.session(),
             largest: which == Which::LargestReal,
             tolerance,
@@ -180,7 +180,7 @@ impl Eps {
                 when.patience as i32,
                 when.loose,
                 Some(restarted as _),
-                &told as *const Told as *mut c_void,
+                &told as *const MonitorContext as *mut c_void,
                 &mut value,
                 &mut residual,
                 found
@@ -241,7 +241,7 @@ impl Eps {
 }
 
 /// A search that tells of its course.
-struct Told<'a> {
+struct MonitorContext<'a> {
     session: &'a Session,
     largest: bool,
     tolerance: f64,
@@ -252,8 +252,8 @@ struct Told<'a> {
 unsafe extern "C" fn restarted(who: *mut c_void, restarts: c_int, residual: f64) -> c_int {
     guard("what is told of a search", || {
         // SAFETY: `solve_settled` passes the address of its own value, which lives until the solve returns.
-        let told = unsafe { &*(who as *const Told) };
-        told.session.tell(Some(&Search {
+        let told = unsafe { &*(who as *const MonitorContext) };
+        told.session.tell(Some(&EigenSearch {
             largest: told.largest,
             restarts: restarts.max(0) as usize,
             residual,

@@ -12,6 +12,7 @@
 #[macro_use]
 mod error;
 mod citations;
+mod eigen_search;
 mod eps;
 mod handle;
 mod heap;
@@ -26,7 +27,6 @@ mod options;
 mod partition;
 mod pc;
 mod scatter;
-mod search;
 mod session;
 mod shell;
 pub mod signals;
@@ -36,26 +36,26 @@ mod vec;
 mod watch;
 
 pub use citations::cite;
+pub use eigen_search::{EigenSearch, Listener};
 pub use eps::{End, Eps, ProblemType, Settled, Which};
 pub use handle::Handle;
 pub use heap::{give_back, let_threads_allocate, Heap};
 pub use is::Is;
 pub use known::known;
 pub use ksp::{ConvergedReason, Ksp, NormType};
-pub use log::{counters, Counters, Event, Scope, Stage};
+pub use log::{counters, Counters, Event, LogStage, Scope};
 pub use mat::{Mat, MatFlag};
-pub use matis::Attached;
+pub use matis::AttachedNullSpace;
 pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
 pub use scatter::Scatter;
-pub use search::{Listener, Search};
 pub use session::version;
 pub use session::{max_memory, print_on_stderr, Comm, Session};
 pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;
 pub use vec::{Array, ArrayMut, Vec};
-pub use watch::{LargeEigenvalue, Look, Stopped};
+pub use watch::{LargeEigenvalue, ResidualMonitor, Stopped};
 
 /// PETSc's own types and the guard against unwinding, for `capi`, which takes objects from C.
 pub mod raw {

@@ -56,15 +56,15 @@ impl Event {
 
 /// A phase of the program: `-log_view` has a table for each.
 #[derive(Debug, Clone, Copy)]
-pub struct Stage(i32);
+pub struct LogStage(i32);
 
-impl Stage {
+impl LogStage {
     /// The stage of this name; repeated calls return the same stage.
-    pub fn register(_session: &Session, name: &str) -> Result<Stage> {
+    pub fn register(_session: &Session, name: &str) -> Result<LogStage> {
         let id = register(true, name, |id| {
             petsc!(PetscLogStageRegister(c_string(name).as_ptr(), id))
         })?;
-        Ok(Stage(id))
+        Ok(LogStage(id))
     }
 
     /// Makes this the current stage.
@@ -115,7 +115,7 @@ pub enum Scope {
     /// A running event.
     Event(Event),
     /// The current stage.
-    Stage(Stage),
+    Stage(LogStage),
 }
 
 impl Drop for Scope {

@@ -134,39 +134,42 @@ impl Mat {
     }
 
     /// The null space that MatSetNullSpace attached.
-    pub fn attached_null_space(&self) -> Result<Option<Attached>> {
+    pub fn attached_null_space(&self) -> Result<Option<AttachedNullSpace>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNullSpace(self.raw(), &mut raw))?;
-        Attached::of(raw, self.session())
+        AttachedNullSpace::of(raw, self.session())
     }
 
     /// The near-null space that MatSetNearNullSpace attached.
-    pub fn attached_near_null_space(&self) -> Result<Option<Attached>> {
+    pub fn attached_near_null_space(&self) -> Result<Option<AttachedNullSpace>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNearNullSpace(self.raw(), &mut raw))?;
-        Attached::of(raw, self.session())
+        AttachedNullSpace::of(raw, self.session())
     }
 }
 
 /// The vectors of a null space that a host program attached to its matrix.
-pub struct Attached {
+pub struct AttachedNullSpace {
     /// Whether the constants belong to it.
     pub constants: bool,
     /// The other vectors.
     pub vectors: std::vec::Vec<Vec>,
 }
 
-impl Attached {
+impl AttachedNullSpace {
     /// The vectors of a null space that a host program lends; `None` for NULL.
     ///
     /// # Safety
     /// `raw` is NULL or a live null space.
-    pub unsafe fn of_host(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
-        Attached::of(raw, session)
+    pub unsafe fn of_host(
+        raw: sys::MatNullSpace,
+        session: &Session,
+    ) -> Result<Option<AttachedNullSpace>> {
+        AttachedNullSpace::of(raw, session)
     }
 
     /// The vectors of a null space; `None` for NULL.
-    fn of(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
+    fn of(raw: sys::MatNullSpace, session: &Session) -> Result<Option<AttachedNullSpace>> {
         if raw.is_null() {
             return Ok(None);
         }
@@ -177,7 +180,7 @@ impl Attached {
             // SAFETY: PETSc lends `n` vectors; each is counted up here.
             vectors.push(Vec::share(unsafe { *list.add(i) }, session)?);
         }
-        Ok(Some(Attached {
+        Ok(Some(AttachedNullSpace {
             constants: constants.get(),
             vectors,
         }))

@@ -1,7 +1,7 @@
 //! An initialised PETSc: starting it, ending it, and failing on several ranks without a hang.
 
+use super::eigen_search::{EigenSearch, Listener};
 use super::error::{c_string, collect_traces, panicked, settled};
-use super::search::{Listener, Search};
 use super::together;
 use base::{Error, Result};
 use mpi::raw::FromRaw;
@@ -197,7 +197,7 @@ impl Session {
         *self.0.listener.borrow_mut() = Some(listener);
     }
 
-    pub(super) fn tell(&self, search: Option<&Search>) {
+    pub(super) fn tell(&self, search: Option<&EigenSearch>) {
         if let Some(listener) = &*self.0.listener.borrow() {
             listener(search);
         }

@@ -38,7 +38,7 @@ impl Split {
 }
 
 /// OP, see the module.
-struct Operator {
+struct ShiftedOperator {
     a: Mat,
     c: Mat,
     split: Split,
@@ -46,7 +46,7 @@ struct Operator {
     w: [Vec; 2],
 }
 
-impl ShellMat for Operator {
+impl ShellMat for ShiftedOperator {
     fn mult(&self, x: &Vec, y: &Vec) -> Result<()> {
         let [v, w] = &self.w;
         self.a.mult(x, v)?; //                     v <- A x
@@ -156,7 +156,7 @@ pub fn extreme_eigenvalues(
     let (rows, cols) = a.local_size()?;
     let shell = |op: Box<dyn ShellMat>| Mat::shell(session, rows, cols, op);
     let work = || -> Result<[Vec; 2]> { Ok([first.duplicate()?, first.duplicate()?]) };
-    let operator = shell(Box::new(Operator {
+    let operator = shell(Box::new(ShiftedOperator {
         a: a.clone(),
         c: c.clone(),
         split: split(),

@@ -20,7 +20,7 @@ pub struct LargeEigenvalue {
 
 /// Called after each iteration with the residual norm of the convergence test; `true` stops the solve. All ranks give
 /// the same answer.
-pub type Look<'a> = dyn FnMut(f64) -> Result<bool> + 'a;
+pub type ResidualMonitor<'a> = dyn FnMut(f64) -> Result<bool> + 'a;
 
 /// Who stopped a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Ksp {
         b: &Vec,
         x: &Vec,
         eigenvalue: Option<LargeEigenvalue>,
-        look: Option<&mut Look>,
+        look: Option<&mut ResidualMonitor>,
     ) -> Result<Stopped> {
         let (b, x) = (b.read()?, x.write()?);
         let (first, limit, rest) = match eigenvalue {
@@ -51,12 +51,12 @@ impl Ksp {
             None => (-1, 0.0, 0.0),
         };
         let looks = look.is_some();
-        let mut look: &mut Look = match look {
+        let mut look: &mut ResidualMonitor = match look {
             Some(look) => look,
             None => &mut |_| Ok(false),
         };
         // PETSc gives the address of the reference back to `looked` during this solve only.
-        let looker = &mut look as *mut &mut Look as *mut c_void;
+        let looker = &mut look as *mut &mut ResidualMonitor as *mut c_void;
         let callback: sys::ff_look = looks.then_some(looked as _);
         let stopped = got(|stopped| {
             petsc!(ff_ksp_solve_watched(
@@ -83,7 +83,7 @@ unsafe extern "C" fn looked(looker: *mut c_void, residual: f64, stop: *mut c_int
     guard("a look at the iteration", || {
         // SAFETY: `solve_watched` passes the address of its reference, which lives until the solve returns, and a place
         // for the answer.
-        let (look, stop) = unsafe { (&mut *(looker as *mut &mut Look), &mut *stop) };
+        let (look, stop) = unsafe { (&mut *(looker as *mut &mut ResidualMonitor), &mut *stop) };
         *stop = c_int::from(look(residual)?);
         Ok(())
     })

@@ -2,7 +2,7 @@
 
 use super::objects::laplacian;
 use super::under_mpirun as mpi;
-use crate::{cite, Comm, Event, Ksp, Options, Session, ShellPc, Stage, Vec as PVec};
+use crate::{cite, Comm, Event, Ksp, LogStage, Options, Session, ShellPc, Vec as PVec};
 use base::Result;
 
 /// The work of a second process, started by the tests below with its own PETSc options; returns its exit code.
@@ -17,7 +17,7 @@ fn with_options(options: &str, help: &str) -> i32 {
     };
     session.run(|session| {
         let event = Event::register(session, "OurEvent")?;
-        let stage = Stage::register(session, "Our stage")?;
+        let stage = LogStage::register(session, "Our stage")?;
         {
             let _stage = stage.scope()?;
             let _event = event.scope()?;

@@ -15,7 +15,7 @@ const BAR: usize = 30;
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// The line.
-pub struct Progress {
+pub struct ProgressLine {
     out: Option<Box<dyn Write>>,
     now: Box<dyn Fn() -> Duration>,
     drawn: Option<Duration>,
@@ -28,7 +28,7 @@ pub struct Progress {
     began: Option<(Duration, usize)>,
 }
 
-impl Progress {
+impl ProgressLine {
     /// A line on stderr, if that is a terminal and `enabled` is set: on rank 0, without `--quiet`.
     pub fn new(enabled: bool) -> Self {
         let start = Instant::now();
@@ -38,12 +38,12 @@ impl Progress {
         } else {
             None
         };
-        Progress::to(out, Box::new(move || start.elapsed()))
+        ProgressLine::to(out, Box::new(move || start.elapsed()))
     }
 
     /// A line on any writer, or none, with any clock; for tests.
     pub fn to(out: Option<Box<dyn Write>>, now: Box<dyn Fn() -> Duration>) -> Self {
-        Progress {
+        ProgressLine {
             out,
             now,
             drawn: None,
@@ -139,7 +139,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         self.finish();
     }

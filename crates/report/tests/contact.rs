@@ -7,10 +7,10 @@ use crate::paraview::contact_fields::ContactFields;
 use crate::paraview::pvd::Pvd;
 use crate::paraview::vtu::Vtu;
 use crate::pictures::field;
-use crate::pictures::field::{ContactMark, Field, Mesh};
+use crate::pictures::field::{ContactMark, PlaneMesh, ShownField};
 use crate::plots::load_steps;
 use crate::plots::profile;
-use crate::plots::profile::Profile;
+use crate::plots::profile::InterfaceProfile;
 use elements::kind::CellKind;
 use flate2::read::ZlibDecoder;
 use mesh::Cells;
@@ -64,8 +64,8 @@ impl Bodies {
         bodies
     }
 
-    fn mesh(&self) -> Mesh<'_> {
-        Mesh {
+    fn mesh(&self) -> PlaneMesh<'_> {
+        PlaneMesh {
             points: &self.points,
             shown: &self.points,
             corners: &self.quads,
@@ -96,7 +96,7 @@ impl Bodies {
     }
 
     /// A parabolic pressure along every face. Its middle moves from face to face; faces k with k % 5 = 4 are open.
-    fn profiles(&self, scale: f64) -> Vec<Profile> {
+    fn profiles(&self, scale: f64) -> Vec<InterfaceProfile> {
         let faces = self.faces().into_iter().enumerate();
         let profile = |(k, (from, along, name)): (usize, ([f64; 2], [f64; 2], String))| {
             let middle = 0.3 + 0.4 * ((k * 7) % 11) as f64 / 11.0;
@@ -122,7 +122,7 @@ impl Bodies {
                 area: Vec::new(),
                 smoothed: Vec::new(),
             };
-            Profile {
+            InterfaceProfile {
                 nodes,
                 label: if along[0] > 0.0 { "x" } else { "y" }.into(),
             }
@@ -131,8 +131,8 @@ impl Bodies {
     }
 
     /// The faces of the elements along the interfaces: closed where both ends are.
-    fn marks(&self, profiles: &[Profile]) -> Vec<ContactMark> {
-        let of = |p: &Profile| {
+    fn marks(&self, profiles: &[InterfaceProfile]) -> Vec<ContactMark> {
+        let of = |p: &InterfaceProfile| {
             let nodes = &p.nodes;
             let at = |k: usize| [nodes.points[k][0], nodes.points[k][1]];
             let mark = |k: usize| ContactMark {
@@ -192,8 +192,8 @@ fn two_interfaces() {
         &field::Beside::default(),
         &bodies.mesh(),
         &[
-            Field::nodal("solution u", &u),
-            Field::coefficient("coefficient ρ", &rho),
+            ShownField::nodal("solution u", &u),
+            ShownField::coefficient("coefficient ρ", &rho),
         ],
         &marks,
         false,
@@ -207,8 +207,8 @@ fn two_interfaces() {
         &field::Beside::default(),
         &bodies.mesh(),
         &[
-            Field::nodal("solution u", &u),
-            Field::coefficient("coefficient ρ", &rho),
+            ShownField::nodal("solution u", &u),
+            ShownField::coefficient("coefficient ρ", &rho),
         ],
         &[],
         false,
@@ -244,8 +244,8 @@ fn one_hundred_and_eighty_interfaces() {
         &field::Beside::default(),
         &bodies.mesh(),
         &[
-            Field::nodal("solution u", &u),
-            Field::coefficient("coefficient ρ", &rho),
+            ShownField::nodal("solution u", &u),
+            ShownField::coefficient("coefficient ρ", &rho),
         ],
         &marks,
         false,

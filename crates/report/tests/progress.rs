@@ -39,10 +39,10 @@ impl Terminal {
     }
 }
 
-fn progress() -> (Terminal, Rc<Cell<u64>>, Progress) {
+fn progress() -> (Terminal, Rc<Cell<u64>>, ProgressLine) {
     let (terminal, clock) = (Terminal::default(), Rc::new(Cell::new(0)));
     let time = clock.clone();
-    let progress = Progress::to(
+    let progress = ProgressLine::to(
         Some(Box::new(terminal.clone())),
         Box::new(move || Duration::from_millis(time.get())),
     );
@@ -91,11 +91,11 @@ fn at_most_twenty_redraws_a_second() {
 
 #[test]
 fn nothing_is_written_where_nobody_looks() {
-    let mut p = Progress::to(None, Box::new(|| Duration::ZERO));
+    let mut p = ProgressLine::to(None, Box::new(|| Duration::ZERO));
     p.step(1, 5);
     p.residual(0.1, 1e-3, 1);
     assert_eq!(p.width, 0);
-    let mut p = Progress::new(false);
+    let mut p = ProgressLine::new(false);
     p.step(1, 5);
     assert!(p.out.is_none() && p.width == 0);
 }
@@ -111,7 +111,7 @@ fn a_broken_terminal_ends_the_line_and_not_the_run() {
             Ok(())
         }
     }
-    let mut p = Progress::to(Some(Box::new(Gone)), Box::new(|| Duration::ZERO));
+    let mut p = ProgressLine::to(Some(Box::new(Gone)), Box::new(|| Duration::ZERO));
     p.step(1, 5);
     assert!(p.out.is_none());
     p.finish();

@@ -15,7 +15,7 @@ const ON_AXIS: f64 = 1e-9;
 /// # Errors
 /// [`ErrorKind::Input`](base::ErrorKind::Input) for a node to the left of the axis, and for solids and boxes with cells
 /// of their own.
-pub(super) fn hold(body: &mut BodySpec, form: &Form) -> Result<()> {
+pub(super) fn constrain_axis(body: &mut BodySpec, form: &Form) -> Result<()> {
     if !form.is_axial() {
         return Ok(());
     }

@@ -3,22 +3,22 @@
 use super::body::{bounds_of, Body};
 use super::deck::DeckScenes;
 use super::geometry::interface::mostly_tied;
-use super::geometry::matching::Matching;
+use super::geometry::matching::NodeMatching;
 use super::geometry::{loose, overlap};
 use super::idle::body::BodySlack;
 use super::interfaces::Interfaces;
 use super::model::expr::Expr;
 use super::model::grid::GridSpec;
-use super::model::joints::Pair;
+use super::model::joints::PairSelector;
 use super::model::spec::{lee, ByDefault, Faces, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
-use super::part::Part;
+use super::part::RankPart;
 use super::renewal::{may_renew, Renewal};
-use super::rows::all::{Joined, Rows};
+use super::rows::all::{Joined, SceneRows};
 use super::rows::equations::Equation;
 use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Obstacle, Standing};
-use super::rows::points::Point;
+use super::rows::points::InterfacePoint;
 use super::{axis, cut, read, rows, validate};
 use crate::part;
 use base::Result;
@@ -65,8 +65,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
     pub interfaces: Interfaces,
-    /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`Point::block`].
-    pub points: Vec<Point>,
+    /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`InterfacePoint::block`].
+    pub points: Vec<InterfacePoint>,
     /// Equations between displacements beside those of ties.
     pub equations: Vec<Equation>,
     /// Rows between sides whose nodes do not match.
@@ -110,7 +110,7 @@ impl Scene {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
-        Scene::load_if(path.as_ref(), false, |_| Ok(Part::WHOLE))
+        Scene::load_if(path.as_ref(), false, |_| Ok(RankPart::WHOLE))
     }
 
     /// [`Scene::load`] of the part that `fits` wants of what was read, unless it objects. It is asked before anything
@@ -118,7 +118,7 @@ impl Scene {
     pub(super) fn load_if(
         path: &Path,
         in_full: bool,
-        fits: impl FnOnce(&SceneSpec) -> Result<Part>,
+        fits: impl FnOnce(&SceneSpec) -> Result<RankPart>,
     ) -> Result<Scene> {
         let file = path.display().to_string();
         if DeckScenes::is_deck(path) {
@@ -145,11 +145,11 @@ impl Scene {
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for overlapping bodies, non-matching nodes on tied faces, values
     /// out of range, ….
     pub fn new(spec: SceneSpec) -> Result<Scene> {
-        Scene::part(spec, Part::WHOLE)
+        Scene::part(spec, RankPart::WHOLE)
     }
 
     /// [`Scene::new`] with the rows of a part, and with the nodes of interfaces that it needs.
-    fn part(mut spec: SceneSpec, part: Part) -> Result<Scene> {
+    fn part(mut spec: SceneSpec, part: RankPart) -> Result<Scene> {
         validate::check(&spec)?;
         let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
@@ -159,7 +159,7 @@ impl Scene {
         for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
             cut::prepare(&mut body, &spec.form, &mut cuts)?;
-            axis::hold(&mut body, &spec.form)?;
+            axis::constrain_axis(&mut body, &spec.form)?;
             let loose = cut::slack(&mut body, &spec.form);
             if !loose.is_empty() {
                 slack.push((bodies.len(), loose));
@@ -176,7 +176,7 @@ impl Scene {
             first_dof += (nodes * components) as u64;
             first_subdomain += subdomains;
         }
-        let mut matching = Matching::new(&bodies);
+        let mut matching = NodeMatching::new(&bodies);
         let written = match &steps {
             Some(steps) if steps.update => Some(spec.clone()),
             _ => None,
@@ -186,10 +186,10 @@ impl Scene {
             steps.renumber(&spec);
         }
         let (mut interfaces, left_out) =
-            rows::entries::find(&bodies, matching, (&spec, &origins), &steps)?;
+            rows::entries::find_interfaces(&bodies, matching, (&spec, &origins), &steps)?;
         spec.notes.extend(left_out.notes);
         spec.asides.extend(left_out.asides);
-        let mut obstacles = rows::obstacles::find(
+        let mut obstacles = rows::obstacles::find_obstacles(
             &bodies,
             &spec.obstacles,
             &spec.form,
@@ -197,9 +197,9 @@ impl Scene {
             Standing::START,
         )?;
         let part = match written {
-            Some(_) => Part::WHOLE,
+            Some(_) => RankPart::WHOLE,
             // Which motions rows see follows from all rows.
-            None if !slack.is_empty() => Part::WHOLE,
+            None if !slack.is_empty() => RankPart::WHOLE,
             None => part.of(&spec, &interfaces, &obstacles),
         };
         let owns = part.owns(&bodies);
@@ -210,7 +210,7 @@ impl Scene {
             known: Vec::new(),
             owns: &owns,
         };
-        let Rows {
+        let SceneRows {
             points,
             mortar,
             equations,
@@ -224,7 +224,7 @@ impl Scene {
         let all = spec.ties.iter().map(|t| &t.pair);
         let mut all = all.chain(spec.contacts.iter().map(|c| &c.pair));
         // Who writes "free" and names pairs wants no others.
-        if spec.default != ByDefault::Free || all.any(|pair| *pair == Pair::All) {
+        if spec.default != ByDefault::Free || all.any(|pair| *pair == PairSelector::All) {
             let language = loose::Language::Scene;
             let loose = loose::sentences(&bodies, &interfaces, &equations, &spec.form, language);
             spec.notes.extend(loose);
@@ -234,7 +234,7 @@ impl Scene {
         validate::check_unknowns(&bodies)?;
         let tied = mostly_tied(&interfaces);
         let interfaces = match part {
-            Part::WHOLE => interfaces.into(),
+            RankPart::WHOLE => interfaces.into(),
             part => part::needed(interfaces, &bodies, &points, part),
         };
         let mut scene = Scene {
@@ -256,7 +256,7 @@ impl Scene {
             renewable: may_renew(&spec.form, &spec.contacts),
             renewal,
             mostly_tied: tied,
-            is_whole: part == Part::WHOLE,
+            is_whole: part == RankPart::WHOLE,
             contact_elsewhere: false,
             n_subdomains: first_subdomain,
             idle: Vec::new(),

@@ -4,7 +4,7 @@ use super::body::Body;
 use super::checked::Scene;
 use super::model::expr::Variables;
 use super::model::field::{At, Field};
-use crate::assembly::{Elements, Grid, SubdomainMesh};
+use crate::assembly::{Grid, SubdomainElements, SubdomainMesh};
 use base::Result;
 use elements::element;
 use mesh::places;
@@ -68,8 +68,10 @@ pub(super) fn by_element(
 /// A point in the middle of every element.
 fn middles(mesh: &SubdomainMesh) -> Box<dyn Iterator<Item = [f64; 3]> + '_> {
     match &mesh.elements {
-        Elements::Grid(grid) => Box::new(grid.element_places().map(|p| middle(mesh, grid, p))),
-        Elements::Cells(cells) => Box::new(cells.iter().map(|(kind, nodes)| {
+        SubdomainElements::Grid(grid) => {
+            Box::new(grid.element_places().map(|p| middle(mesh, grid, p)))
+        }
+        SubdomainElements::Cells(cells) => Box::new(cells.iter().map(|(kind, nodes)| {
             let points: Vec<_> = nodes.iter().map(|&k| mesh.points[k as usize]).collect();
             element::middle(kind, &points)
         })),
@@ -94,10 +96,10 @@ fn middle(mesh: &SubdomainMesh, grid: &Grid, place: [usize; 3]) -> [f64; 3] {
 /// elements around a node act in parallel: the stiffest one determines its motion.
 pub(super) fn stiffest(mesh: &SubdomainMesh) -> Vec<f64> {
     match &mesh.elements {
-        Elements::Grid(grid) => places(grid.nodes())
+        SubdomainElements::Grid(grid) => places(grid.nodes())
             .map(|p| stiffest_at(mesh, grid, p))
             .collect(),
-        Elements::Cells(cells) => {
+        SubdomainElements::Cells(cells) => {
             let mut out = vec![0.0_f64; mesh.points.len()];
             for ((_, nodes), rho) in cells.iter().zip(&mesh.rho) {
                 for &k in nodes {

@@ -2,14 +2,14 @@
 
 use super::model::body::{BodySpec, Cut};
 use super::model::map::Map;
-use crate::assembly::slack::{self, Motion};
+use crate::assembly::zero_energy::{self, ZeroEnergyMode};
 use base::linalg::sorted::distinct;
 use base::Result;
 use elements::cell::{Element, Material};
 use elements::element::{self, Doubt, Integration};
 use elements::form::Form;
 use mesh::partition::{subdomains_for, Interface, Partition, Sharing};
-use mesh::{congruent, second_order, BoxMesh, CellMesh, Mesh, Outline, Parts};
+use mesh::{congruent, second_order, BoxMesh, CellMesh, Mesh, MeshFingerprint, MeshPartition};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -79,14 +79,14 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
 
 /// The motions without energy of a body's mesh beyond the rigid ones. Where subdomains share nodes that they move,
 /// these become vertices, so that no subdomain has such a motion by itself.
-pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<Motion> {
+pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<ZeroEnergyMode> {
     let Mesh::Cells(mesh) = &body.mesh else {
         return Vec::new();
     };
     if body.integration.is_empty() {
         return Vec::new();
     }
-    let found = slack::slack(form, mesh, &body.integration, &|node| body.position(node));
+    let found = zero_energy::slack(form, mesh, &body.integration, &|node| body.position(node));
     let c = form.components(mesh.dim) as u32;
     let moves = found.iter().flatten().map(|e| e.0 / c);
     let shared = |k: &u32| mesh.parts.sharers(*k as usize).len() > 1;
@@ -103,7 +103,7 @@ pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<Motion> {
 #[derive(Default)]
 pub(super) struct Cuts {
     /// The meshes that have been cut, each with the number of subdomains that it was to have.
-    cut: Vec<(usize, Outline, Arc<CellMesh>)>,
+    cut: Vec<(usize, MeshFingerprint, Arc<CellMesh>)>,
     /// Meshes that copies share, by where they are in memory: as they were, and what has become of them. The number is
     /// 0 for those that stay as they are.
     copies: HashMap<(usize, usize), (Arc<CellMesh>, Arc<CellMesh>)>,
@@ -116,8 +116,8 @@ pub(super) struct Cuts {
 impl Cuts {
     /// Cuts a mesh as the first of its copies was cut.
     fn cut(&mut self, mesh: &mut Arc<CellMesh>, n: usize) {
-        let outline = Outline::new(mesh);
-        let like = |(of, outlined, known): &&(usize, Outline, Arc<CellMesh>)| {
+        let outline = MeshFingerprint::new(mesh);
+        let like = |(of, outlined, known): &&(usize, MeshFingerprint, Arc<CellMesh>)| {
             *of == n && outlined.may_be(&outline) && congruent(known, mesh)
         };
         if let Some((_, _, known)) = self.cut.iter().find(like) {
@@ -144,7 +144,7 @@ fn cut(mesh: &mut CellMesh, n: usize) {
     let (cells, points) = (&mesh.cells, &mesh.points);
     let sharing = Sharing::new(cells, &partition.part, partition.n, points.len());
     let interface = Interface::new(cells, &adjacency, points, &partition.part, &sharing, true);
-    mesh.parts = Parts::new(partition.part, sharing, interface);
+    mesh.parts = MeshPartition::new(partition.part, sharing, interface);
     mesh.forget_adjacency();
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::checked::Scene;
 use super::fits;
 use super::model::spec::SceneSpec;
-use super::part::Part;
+use super::part::RankPart;
 use base::{Error, Result};
 use fetifeti::Problem;
 use parallel::exchange::gather_all;
@@ -20,7 +20,7 @@ pub fn load(session: &Session, path: &Path) -> Result<Scene> {
 pub fn load_part(session: &Session, path: &Path) -> Result<Scene> {
     let mut cyclic = false;
     let read = fits::load_part(session, path, |spec| {
-        let part = part(session, spec)?;
+        let part = rank_part(session, spec)?;
         cyclic = part.cyclic;
         Ok(part)
     });
@@ -121,15 +121,15 @@ fn is_cyclic_unless(session: &Session, value: Option<&str>) -> Result<bool> {
 }
 
 /// The part of this rank of what `spec` describes.
-fn part(session: &Session, spec: &SceneSpec) -> Result<Part> {
+fn rank_part(session: &Session, spec: &SceneSpec) -> Result<RankPart> {
     let own = spec.options.iter().find(|(key, _)| key == DISTRIBUTION);
     let cyclic = is_cyclic_unless(session, own.map(|o| o.1.as_str()))?;
     Ok(of_rank(session, cyclic))
 }
 
 /// The part of this rank.
-fn of_rank(session: &Session, cyclic: bool) -> Part {
-    Part {
+fn of_rank(session: &Session, cyclic: bool) -> RankPart {
+    RankPart {
         cyclic,
         ranks: session.size(),
         rank: session.rank(),

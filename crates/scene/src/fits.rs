@@ -5,7 +5,7 @@ use std::path::Path;
 use super::checked::Scene;
 use super::model::spec::{ByDefault, Faces, SceneSpec};
 use super::need::Need;
-use super::part::Part;
+use super::part::RankPart;
 use super::read::MOST_IN_A_ROW;
 use super::validate::MOST_BODIES;
 use crate::model::spec;
@@ -31,14 +31,14 @@ enum Until {
 /// Those of [`Scene::load`]; [`ErrorKind::Environment`](base::ErrorKind::Environment) with the estimate, the memory
 /// that there is, and what to change.
 pub fn load(session: &Session, path: &Path) -> Result<Scene> {
-    load_part(session, path, |_| Ok(Part::WHOLE))
+    load_part(session, path, |_| Ok(RankPart::WHOLE))
 }
 
 /// [`load`] of a part.
 pub(super) fn load_part(
     session: &Session,
     path: &Path,
-    part: impl FnOnce(&SceneSpec) -> Result<Part>,
+    part: impl FnOnce(&SceneSpec) -> Result<RankPart>,
 ) -> Result<Scene> {
     let name = path.display().to_string();
     let in_full = is_in_full(session)?;

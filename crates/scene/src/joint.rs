@@ -3,7 +3,7 @@
 use super::checked::Scene;
 use super::coefficient::{at, stiffest};
 use super::geometry::topology::{entities, rigid_motions};
-use super::matrices::Matrices;
+use super::matrices::MatrixCache;
 use super::model::steps::Factors;
 use crate::assembly::{self, SubdomainMesh};
 use base::Result;
@@ -21,7 +21,7 @@ impl Scene {
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Problem> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
-        let matrices = Matrices::default();
+        let matrices = MatrixCache::default();
         // Assembles all subdomains, then reports the first error in their order: the first error in time would be
         // random.
         let local: Vec<Result<Subdomain>> = mine
@@ -51,11 +51,11 @@ impl Scene {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
-        self.assemble_with(mesh, &Matrices::default())
+        self.assemble_with(mesh, &MatrixCache::default())
     }
 
     /// Subdomain `mesh.index` on its mesh; `matrices` may have its stiffness matrix already.
-    fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &Matrices) -> Result<Subdomain> {
+    fn assemble_with(&self, mesh: &SubdomainMesh, matrices: &MatrixCache) -> Result<Subdomain> {
         let (body, inside) = self.place(mesh.index);
         let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
         let f = if mesh.prescribed.iter().all(|u| *u == 0.0) {

@@ -55,22 +55,23 @@ pub use checked::Scene;
 pub use deck::DeckScenes;
 pub use displaced::Displaced;
 pub use equilibrium::{Forces, Wrench};
-pub use geometry::interface::{Interface, Link, Shape, SharedNode};
+pub use geometry::interface::{BodyInterface, InterfaceShape, Link, SharedNode};
 pub use interfaces::Interfaces;
 pub use loads::{SteppedMesh, Stepping};
 pub use model::body::{
-    free_all_round, held_all_round, BodyKind, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, SIDES,
+    free_all_round, held_all_round, BodyKind, BodySpec, Cut, Force, GivenSides, Load, SurfaceLoad,
+    SIDES,
 };
-pub use model::cells::{Cells, NumberFormat, Tone};
+pub use model::cells::{CellGrid, NumberFormat, Tone};
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};
 pub use model::grid::GridSpec;
 pub use model::joints::{
-    AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec,
+    AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, PairSelector, TieSpec,
 };
 pub use model::map::{BodyShape, Map, Round};
-pub use model::motion::Motion;
+pub use model::motion::Isometry;
 pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;
@@ -78,10 +79,10 @@ pub use model::rigid_surface::RigidSurface;
 pub use model::spec::{lee, ByDefault, Faces, ProbeSpec, SceneSpec};
 pub use model::steps::Steps;
 pub use numbering::Numbering;
-pub use plan::{BodyPlan, InterfacePlan, Plan};
+pub use plan::{BodyPlan, InterfacePlan, ScenePlan};
 pub use read::read;
 pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
-pub use rows::points::{Inequality, Point, PointRow};
+pub use rows::points::{Inequality, InterfacePoint, PointRow};
 pub use rows::terms::{RowTerm, RowTerms};
 pub use side_pair::{SidePair, SurfaceObstacle};

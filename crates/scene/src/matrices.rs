@@ -10,28 +10,28 @@ use std::hash::{Hash, Hasher};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::body::Body;
-use super::model::motion::Motion;
-use crate::assembly::{self, Elements, SubdomainMesh};
+use super::model::motion::Isometry;
+use crate::assembly::{self, SubdomainElements, SubdomainMesh};
 use base::linalg::csr::Csr;
 
 /// The matrices that have been made, by hashes of what they follow from. Threads share it.
 #[derive(Default)]
-pub(super) struct Matrices {
-    known: Mutex<HashMap<u64, Vec<Known>>>,
+pub(super) struct MatrixCache {
+    known: Mutex<HashMap<u64, Vec<CachedMatrix>>>,
 }
 
 /// A matrix, and what it follows from.
-struct Known {
+struct CachedMatrix {
     mesh: SubdomainMesh,
     k: Arc<Csr>,
 }
 
-impl Matrices {
+impl MatrixCache {
     /// K of a subdomain of `body` on its mesh.
     pub(super) fn of(&self, body: &Body, mesh: &SubdomainMesh, nodes: &[usize]) -> Arc<Csr> {
         let mesh = unplaced(body, mesh, nodes);
         let hash = hash(&mesh);
-        let find = |known: &HashMap<u64, Vec<Known>>| {
+        let find = |known: &HashMap<u64, Vec<CachedMatrix>>| {
             let mut like = known.get(&hash).into_iter().flatten();
             like.find(|k| is_alike(&k.mesh, &mesh)).map(|k| k.k.clone())
         };
@@ -51,7 +51,10 @@ impl Matrices {
             ..mesh.into_owned()
         };
         let k_too = k.clone();
-        known.entry(hash).or_default().push(Known { mesh, k });
+        known
+            .entry(hash)
+            .or_default()
+            .push(CachedMatrix { mesh, k });
         k_too
     }
 }
@@ -62,7 +65,7 @@ fn unplaced<'m>(body: &Body, mesh: &'m SubdomainMesh, nodes: &[usize]) -> Cow<'m
     let Some(motion) = spec.motion.filter(|_| spec.moved.is_none()) else {
         return Cow::Borrowed(mesh);
     };
-    let turn = Motion {
+    let turn = Isometry {
         shift: [0.0; 3],
         ..motion
     };
@@ -76,7 +79,7 @@ fn unplaced<'m>(body: &Body, mesh: &'m SubdomainMesh, nodes: &[usize]) -> Cow<'m
 /// The positions on which K depends; none for a grid of equal boxes.
 fn places(mesh: &SubdomainMesh) -> &[[f64; 3]] {
     match &mesh.elements {
-        Elements::Grid(grid) if grid.step.is_some() => &[],
+        SubdomainElements::Grid(grid) if grid.step.is_some() => &[],
         _ => &mesh.points,
     }
 }
@@ -89,8 +92,8 @@ fn hash(mesh: &SubdomainMesh) -> u64 {
         numbers.iter().for_each(|v| v.to_bits().hash(state));
     };
     match &mesh.elements {
-        Elements::Grid(grid) => grid.elements.hash(&mut state),
-        Elements::Cells(cells) => cells.len().hash(&mut state),
+        SubdomainElements::Grid(grid) => grid.elements.hash(&mut state),
+        SubdomainElements::Cells(cells) => cells.len().hash(&mut state),
     }
     mesh.dof.hash(&mut state);
     for point in places(mesh) {

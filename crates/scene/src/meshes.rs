@@ -6,7 +6,7 @@ use super::coefficient::{by_element, evaluate};
 use super::model::field::Field;
 use super::model::steps::Factors;
 use super::quantity::{Quantity, RATIO, SPRING};
-use crate::assembly::{self, Elements, Grid, SidePart, SubdomainMesh};
+use crate::assembly::{self, Grid, SidePart, SubdomainElements, SubdomainMesh};
 use base::Result;
 use elements::element::Integration;
 use mesh::{Cells, Mesh};
@@ -96,9 +96,9 @@ impl Scene {
 }
 
 /// The elements of subdomain `inside` of a body; `nodes` are its nodes in the body, increasing.
-fn elements(body: &Body, inside: usize, nodes: &[usize]) -> Elements {
+fn elements(body: &Body, inside: usize, nodes: &[usize]) -> SubdomainElements {
     match body.mesh() {
-        Mesh::Grid(grid) => Elements::Grid(Grid {
+        Mesh::Grid(grid) => SubdomainElements::Grid(Grid {
             elements: grid.block_elements(),
             step: body.spec.is_straight().then(|| grid.step()),
         }),
@@ -111,7 +111,7 @@ fn elements(body: &Body, inside: usize, nodes: &[usize]) -> Elements {
                 local.extend(mesh.cells.nodes(c as usize).iter().map(place));
                 cells.push(mesh.cells.kind(c as usize), &local);
             }
-            Elements::Cells(cells)
+            SubdomainElements::Cells(cells)
         }
     }
 }

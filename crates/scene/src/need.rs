@@ -47,20 +47,20 @@ pub struct Need {
     /// Over all ranks: matrices and loads; and what a solver adds beside factors.
     parts: [f64; 2],
     /// Stiffness matrices, and factors.
-    matrices: Shared,
-    factors: Shared,
+    matrices: CongruentMemory,
+    factors: CongruentMemory,
 }
 
 /// The memory of matrices or factors that subdomains share if they are alike.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Shared {
+struct CongruentMemory {
     /// Bytes of one, how many differ, how many subdomains share them.
     groups: Vec<[f64; 3]>,
     /// The group of each key.
     known: HashMap<[u64; 13], usize>,
 }
 
-impl Shared {
+impl CongruentMemory {
     /// Adds a body's subdomains, of which `kinds` differ, to the group of those with the same key. Without a key all
     /// differ.
     fn add(&mut self, key: Option<[u64; 13]>, bytes: f64, kinds: f64, subdomains: f64) {
@@ -86,7 +86,7 @@ impl Shared {
 }
 
 /// One body in numbers.
-struct Counts {
+struct BodyCounts {
     elements: f64,
     nodes: f64,
     subdomains: f64,
@@ -113,7 +113,7 @@ impl Need {
         for body in bodies {
             let dim = body.mesh.dim();
             let c = form.components(dim) as f64;
-            let n = Counts::of(body, c as usize);
+            let n = BodyCounts::of(body, c as usize);
             need.elements += n.elements;
             need.subdomains += n.subdomains;
             if n.cells {
@@ -160,7 +160,7 @@ impl Need {
     }
 }
 
-impl Counts {
+impl BodyCounts {
     /// Nodes on the boundary of the body; of a mesh of cells, those of a cube with as many nodes.
     fn surface(&self, dim: usize) -> f64 {
         if !self.cells {
@@ -170,7 +170,7 @@ impl Counts {
         (2.0 * d * self.nodes.powf((d - 1.0) / d)).min(self.nodes)
     }
 
-    fn of(body: &BodySpec, components: usize) -> Counts {
+    fn of(body: &BodySpec, components: usize) -> BodyCounts {
         match &body.mesh {
             Mesh::Grid(grid) => {
                 let dim = grid.dim();
@@ -196,7 +196,7 @@ impl Counts {
                     (_, 2) => 58.0,
                     _ => 27.0,
                 };
-                Counts {
+                BodyCounts {
                     elements: all[0],
                     nodes: second(all),
                     subdomains: grid.subdomains[..dim].iter().map(|&n| n as f64).product(),
@@ -221,7 +221,7 @@ impl Counts {
                     (_, true) => 40.0,
                     (_, false) => 15.0,
                 };
-                Counts {
+                BodyCounts {
                     elements: mesh.cells.len() as f64,
                     nodes: nodes as f64,
                     subdomains,

@@ -4,17 +4,17 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::body::Body;
-use super::geometry::interface::Interface;
+use super::geometry::interface::BodyInterface;
 use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
-use super::rows::points::Point;
+use super::rows::points::InterfacePoint;
 use fetifeti::problem::RowSource;
 use parallel::contiguous_share;
 
 /// The part of one of several ranks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(super) struct RankPart {
     /// Whether subdomains are dealt out one after the other in turn, and not in contiguous blocks.
     pub cyclic: bool,
     /// The number of ranks.
@@ -23,9 +23,9 @@ pub(super) struct Part {
     pub rank: usize,
 }
 
-impl Part {
+impl RankPart {
     /// All of a scene.
-    pub const WHOLE: Part = Part {
+    pub const WHOLE: RankPart = RankPart {
         cyclic: false,
         ranks: 1,
         rank: 0,
@@ -33,12 +33,17 @@ impl Part {
 
     /// This part, or the whole where rows lead from point to point, so that their blocks and owners follow from all of
     /// them: where there are equations, or sides whose nodes do not match.
-    pub fn of(self, spec: &SceneSpec, interfaces: &[Interface], obstacles: &[Obstacle]) -> Part {
+    pub fn of(
+        self,
+        spec: &SceneSpec,
+        interfaces: &[BodyInterface],
+        obstacles: &[Obstacle],
+    ) -> RankPart {
         let chained = !spec.equations.is_empty()
             || interfaces.iter().any(|i| i.mortar.is_some())
             || obstacles.iter().any(|o| o.surface.is_some());
         if chained {
-            Part::WHOLE
+            RankPart::WHOLE
         } else {
             self
         }
@@ -47,7 +52,7 @@ impl Part {
     /// For each body the ranks that own subdomains of it, increasing.
     pub fn ranks_of(self, bodies: &[Body]) -> impl Fn(usize) -> Vec<usize> + use<'_> {
         let starts = starts(bodies, self.ranks);
-        let Part { cyclic, ranks, .. } = self;
+        let RankPart { cyclic, ranks, .. } = self;
         move |b: usize| {
             let rank_of = |s: usize| {
                 if cyclic {
@@ -62,7 +67,7 @@ impl Part {
 
     /// A predicate: whether the rank owns a subdomain.
     pub fn owns(self, bodies: &[Body]) -> impl Fn(usize) -> bool + use<> {
-        let Part {
+        let RankPart {
             cyclic,
             ranks,
             rank,
@@ -81,16 +86,16 @@ impl Part {
 /// The interfaces that a rank needs: those of its bodies and of the rows at `points`. The first rank reports all; of
 /// the others it drops what they know node by node.
 pub(super) fn needed(
-    mut interfaces: Vec<Interface>,
+    mut interfaces: Vec<BodyInterface>,
     bodies: &[Body],
-    points: &[Point],
-    part: Part,
+    points: &[InterfacePoint],
+    part: RankPart,
 ) -> Interfaces {
     let owns = part.owns(bodies);
     let own = |body: &usize| bodies[*body].subdomains().any(&owns);
     let rows = points.iter().flat_map(|p| &p.rows);
     let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
-    let needs = |k: usize, interface: &Interface| {
+    let needs = |k: usize, interface: &BodyInterface| {
         interface.bodies.iter().any(own) || used.contains(&RowSource::Interface(k))
     };
     if part.rank > 0 {

@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::checked::Scene;
-use super::geometry::interface::{Link, Shape};
+use super::geometry::interface::{InterfaceShape, Link};
 use super::numbering::Numbering;
 use super::rows::points::PointRow;
 use base::Result;
@@ -55,7 +55,7 @@ pub struct InterfacePlan {
 
 /// The sizes of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct ScenePlan {
     /// Title of the scene.
     pub title: String,
     /// Its bodies.
@@ -92,7 +92,7 @@ pub struct Plan {
 
 impl Scene {
     /// Counts the sizes.
-    pub fn plan(&self) -> Plan {
+    pub fn plan(&self) -> ScenePlan {
         debug_assert!(self.is_whole, "a part has no counts of the whole");
         let bodies: Vec<BodyPlan> = (0..self.n_bodies()).map(|b| self.body_plan(b)).collect();
         let interfaces = self
@@ -100,7 +100,7 @@ impl Scene {
             .iter()
             .map(|i| InterfacePlan {
                 bodies: i.bodies,
-                corner: i.shape == Shape::Corner,
+                corner: i.shape == InterfaceShape::Corner,
                 nodes: i.shared.len(),
                 unmatched: i.unmatched.len(),
                 tied: i.shared.iter().filter(|s| s.link == Link::Tied).count(),
@@ -108,7 +108,7 @@ impl Scene {
                 multipliers: i.mortar.as_ref().map(|m| i.bodies[m.multipliers]),
             })
             .collect();
-        Plan {
+        ScenePlan {
             title: self.title.clone(),
             interfaces,
             subdomains: self.n_subdomains(),
@@ -153,7 +153,7 @@ impl Scene {
     fn body_plan(&self, b: usize) -> BodyPlan {
         let body = &self.bodies[b];
         let mesh = body.mesh();
-        let mut counts = Counts::default();
+        let mut counts = EntityCounts::default();
         for node in mesh.shared_nodes() {
             counts.add(body, node);
         }
@@ -182,13 +182,13 @@ impl Scene {
 
 /// Numbers of shared entities inside a body.
 #[derive(Default)]
-struct Counts {
+struct EntityCounts {
     primal: usize,
     multipliers: usize,
     edges: HashSet<([usize; 3], usize)>,
 }
 
-impl Counts {
+impl EntityCounts {
     fn add(&mut self, body: &Body, node: usize) {
         let mesh = body.mesh();
         let copies = mesh.multiplicity(node);

@@ -15,14 +15,14 @@
 use std::collections::HashMap;
 
 use super::body::Body;
-use super::geometry::interface::{Interface, Link, Shape};
-use super::geometry::matching::Matching;
+use super::geometry::interface::{BodyInterface, InterfaceShape, Link};
+use super::geometry::matching::NodeMatching;
 use super::geometry::mortar::is_for_contact;
-use super::model::joints::{ContactSpec, Extent, Pair};
+use super::model::joints::{ContactSpec, Extent, PairSelector};
 use super::model::profile::Profile;
 use super::model::spec::SceneSpec;
 use super::model::steps::{Factors, Steps};
-use super::rows::all::{Joined, Rows};
+use super::rows::all::{Joined, SceneRows};
 use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Adjusted, Obstacle, Standing};
 use super::rows::{entries, obstacles, surfaces};
@@ -37,7 +37,7 @@ pub(crate) struct Renewal {
     /// The scene without its bodies, before surfaces in it were replaced by bodies and sides.
     written: SceneSpec,
     /// The interfaces that stay as they are: ties, faces that are tied in part, corners.
-    kept: Vec<Interface>,
+    kept: Vec<BodyInterface>,
     /// Their rows, where nodes do not match.
     rows: Vec<MortarRow>,
     /// The sides of bodies that touched to begin with, and which of them carries multipliers.
@@ -57,7 +57,7 @@ impl Renewal {
         written: SceneSpec,
         spec: &SceneSpec,
         bodies: &[Body],
-        interfaces: &[Interface],
+        interfaces: &[BodyInterface],
         obstacles: &[Obstacle],
         mortar: &[MortarRow],
     ) -> Result<Renewal> {
@@ -117,20 +117,20 @@ impl Renewal {
 }
 
 /// Whether the interface has contact alone, on a face.
-pub(super) fn is_renewed(interface: &Interface) -> bool {
+pub(super) fn is_renewed(interface: &BodyInterface) -> bool {
     let tied = |link: Link| matches!(link, Link::Tied | Link::Open);
-    let face = interface.shape == Shape::Face && interface.has_contact();
+    let face = interface.shape == InterfaceShape::Face && interface.has_contact();
     face && !interface.shared.iter().any(|s| tied(s.link))
 }
 
 /// The body with the multipliers of an interface that an entry names, 0 or 1: where nodes match, that of the entry.
-fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &Interface) -> Option<usize> {
+fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &BodyInterface) -> Option<usize> {
     if let Some(mortar) = &interface.mortar {
         return Some(mortar.multipliers);
     }
     let number = interface.entry?.checked_sub(spec.ties.len())?;
     let contact = &spec.contacts[number];
-    let Pair::Named(first, _) = &contact.pair else {
+    let PairSelector::Named(first, _) = &contact.pair else {
         return None;
     };
     let which = contact.multipliers.unwrap_or(0);
@@ -142,7 +142,7 @@ fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &Interface) -> Option<
 }
 
 /// The normal at a shared node, out of one of the bodies.
-fn outward(interface: &Interface, shared: usize, body: usize) -> [f64; 3] {
+fn outward(interface: &BodyInterface, shared: usize, body: usize) -> [f64; 3] {
     let normal = interface.normals[shared];
     match body {
         0 => normal,
@@ -154,8 +154,8 @@ fn outward(interface: &Interface, shared: usize, body: usize) -> [f64; 3] {
 fn carrier(spec: &SceneSpec, bodies: &[Body], pair: [usize; 2]) -> Option<usize> {
     let [a, b] = pair.map(|k| &bodies[k].spec.name);
     spec.contacts.iter().find_map(|c| match &c.pair {
-        Pair::Named(x, y) if x == a && y == b => c.multipliers,
-        Pair::Named(x, y) if x == b && y == a => c.multipliers.map(|k| 1 - k),
+        PairSelector::Named(x, y) if x == a && y == b => c.multipliers,
+        PairSelector::Named(x, y) if x == b && y == a => c.multipliers.map(|k| 1 - k),
         _ => None,
     })
 }
@@ -200,9 +200,9 @@ impl Renewal {
         bodies: &mut [Body],
         steps: &mut Option<Steps>,
         step: usize,
-    ) -> Result<(Vec<Interface>, Vec<Obstacle>, Rows)> {
+    ) -> Result<(Vec<BodyInterface>, Vec<Obstacle>, SceneRows)> {
         let mut spec = self.written.clone();
-        let mut matching = Matching::new(bodies);
+        let mut matching = NodeMatching::new(bodies);
         surfaces::expand_contacts(bodies, &mut matching, &mut spec);
         let mut found = sides(bodies, &mut matching, &spec, self);
         drop(matching);
@@ -215,7 +215,7 @@ impl Renewal {
         let standing = Standing::after(factors, &self.beside);
         let mut interfaces = self.kept.clone();
         interfaces.extend(found);
-        let mut obstacles = obstacles::find(
+        let mut obstacles = obstacles::find_obstacles(
             bodies,
             &spec.obstacles,
             &spec.form,
@@ -237,7 +237,7 @@ impl Renewal {
 
 impl Renewal {
     /// Nodes that were adjusted at the start stay so; body number `which` of the pair carries the multipliers.
-    fn adjust(&self, interface: &mut Interface, which: usize) {
+    fn adjust(&self, interface: &mut BodyInterface, which: usize) {
         if self.adjusted.is_empty() {
             return;
         }
@@ -258,10 +258,10 @@ impl Renewal {
 /// The interfaces of sides in contact, where bodies are now: nodes opposite each other, or mortar integrals.
 fn sides(
     bodies: &[Body],
-    matching: &mut Matching<'_>,
+    matching: &mut NodeMatching<'_>,
     spec: &SceneSpec,
     renewal: &Renewal,
-) -> Vec<Interface> {
+) -> Vec<BodyInterface> {
     let mut out = Vec::new();
     let mut meet = |pair, sides, which, reach, entry: Option<usize>| {
         let nodal = matching.find(pair, sides, reach).ok().cloned();
@@ -284,7 +284,8 @@ fn sides(
     }
     let body = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
     for (number, contact) in spec.contacts.iter().enumerate() {
-        let (Some(sides), Pair::Named(first, second)) = (contact.sides, &contact.pair) else {
+        let (Some(sides), PairSelector::Named(first, second)) = (contact.sides, &contact.pair)
+        else {
             continue;
         };
         let (Some(a), Some(b)) = (body(first), body(second)) else {

@@ -1,7 +1,7 @@
 //! How the sides of two bodies lie to each other: what `plan` says of a pair.
 
 use super::checked::Scene;
-use super::geometry::interface::{Link, Shape};
+use super::geometry::interface::{InterfaceShape, Link};
 use super::geometry::normals::of_side;
 use super::model::steps::Factors;
 use base::linalg::vec3::dot;
@@ -67,7 +67,7 @@ impl Scene {
             gap: [0.0; 2],
             angle: 0.0,
         };
-        if interface.shape == Shape::Corner {
+        if interface.shape == InterfaceShape::Corner {
             return out;
         }
         let gaps = interface.shared.iter().zip(&interface.distances);

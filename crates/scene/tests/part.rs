@@ -82,7 +82,7 @@ fn ranks_of_a_body_are_those_that_own_a_subdomain_of_it() {
     ] {
         let scene = Scene::load(file).expect("a scene");
         for (ranks, cyclic) in [(1, false), (3, false), (3, true), (40, false)] {
-            let part = |rank| Part {
+            let part = |rank| RankPart {
                 cyclic,
                 ranks,
                 rank,
@@ -119,7 +119,7 @@ fn parts_have_the_rows_of_the_whole() {
             for cyclic in [false, true] {
                 let mut rows = 0;
                 for rank in 0..ranks {
-                    let wanted = Part {
+                    let wanted = RankPart {
                         cyclic,
                         ranks,
                         rank,
@@ -195,7 +195,7 @@ fn points_and_given_values_are_found_by_way_of_bodies_in_between() {
         assert_eq!(given(&whole)[0].len(), usize::from(kind == "tie"));
         for ranks in [2, 3, 4, 8] {
             for rank in 0..ranks {
-                let wanted = Part {
+                let wanted = RankPart {
                     cyclic: false,
                     ranks,
                     rank,
@@ -218,14 +218,14 @@ fn parts_know_the_interfaces_of_their_bodies_and_rows() {
     assert!(whole.interfaces.len() > 10);
     let ranks = 4;
     for rank in 0..ranks {
-        let part = Part {
+        let part = RankPart {
             cyclic: false,
             ranks,
             rank,
         };
         let scene = Scene::load_if(Path::new(file), false, |_| Ok(part)).expect(file);
         assert_eq!(scene.interfaces.len(), whole.interfaces.len());
-        let known: Vec<(usize, &Interface)> = scene.interfaces.numbered().collect();
+        let known: Vec<(usize, &BodyInterface)> = scene.interfaces.numbered().collect();
         // The first rank reports all.
         assert_eq!(known.len() == whole.interfaces.len(), rank == 0, "{rank}");
         let rows = scene.points.iter().flat_map(|p| &p.rows);

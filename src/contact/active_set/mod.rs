@@ -11,17 +11,17 @@
 //! Nothing makes the sets converge. Where the number of wrong rows does not fall for some steps, the loop hands over to
 //! the augmented Lagrangian.
 
-mod next;
+mod next_set;
 
 use std::time::Instant;
 
-use super::judge::Sizes;
-use super::pulling::Pulling;
-use super::restore::restore;
+use super::coercivity::restore_coercivity;
+use super::judge::JudgeSizes;
+use super::pull_monitor::PullMonitor;
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, State, Step};
-use super::{judge, motion};
-use crate::feti::krylov::iterate::{IterationControl, Look, Run};
+use super::{farkas, judge};
+use crate::feti::krylov::iterate::{IterateMonitor, IterationControl, KrylovRun};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
@@ -66,7 +66,7 @@ pub(super) fn solve(
         let (step, status, verdict) = run.step()?;
         observe(&step, &run.state)?;
         steps.push(step);
-        if !status.converged() || verdict == Verdict::Solved {
+        if !status.converged() || verdict == ActiveSetChange::Solved {
             break status;
         }
     };
@@ -97,7 +97,7 @@ const CLOSED: f64 = 1e3;
 
 /// The verdict after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum ActiveSetChange {
     /// The set stays at the tolerance of the user.
     Solved,
     /// The loop must go on.
@@ -129,7 +129,7 @@ pub(super) struct ActiveSet<'a> {
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
     /// Sizes of the problem beside which multipliers and gaps are rounding.
-    sizes: Sizes,
+    sizes: JudgeSizes,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -149,10 +149,10 @@ impl<'a> ActiveSet<'a> {
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         // Who gives a reference has asked for these loads before.
         if state.reference == 0.0 {
-            motion::check_few(problem, &dual, &loads.kernel)?;
+            farkas::check_few(problem, &dual, &loads.kernel)?;
         }
         let n_rows = jump.n_global;
-        let sizes = Sizes::of(&dual, problem);
+        let sizes = JudgeSizes::of(&dual, problem);
         let at = Iterate::new(&dual, loads)?;
         drop(dual);
         let mut run = ActiveSet {
@@ -178,7 +178,7 @@ impl<'a> ActiveSet<'a> {
             let dual = method.dual();
             let (active, lambda) = (&mut run.state.active, &run.state.lambda);
             let load = &run.at.loads.kernel;
-            restore(problem, &dual, active, &|r| lambda[r], load)?;
+            restore_coercivity(problem, &dual, active, &|r| lambda[r], load)?;
         }
         if run.state.reference == 0.0 {
             run.state.reference = run.reference()?;
@@ -198,7 +198,7 @@ impl<'a> ActiveSet<'a> {
         let all = State::cold(&method.dual().stiffness.jump).active;
         method.set_active(&all)?;
         let dual = method.dual();
-        motion::check_held(&method.problem, &dual, &self.at.loads.kernel)?;
+        farkas::check_held(&method.problem, &dual, &self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
         self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)
@@ -229,7 +229,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.
-    pub fn step(&mut self) -> Result<(Step, Status, Verdict)> {
+    pub fn step(&mut self) -> Result<(Step, Status, ActiveSetChange)> {
         let clock = Instant::now();
         let (session, method) = (&self.method.session, self.method);
         let changed = method.set_active(&self.state.active)?;
@@ -259,7 +259,7 @@ impl<'a> ActiveSet<'a> {
             (false, _) => target.max(reduced),
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);
-        let mut pulling = Pulling::new(
+        let mut pulling = PullMonitor::new(
             session.comm(),
             &method.dual().stiffness.jump,
             &self.at,
@@ -267,7 +267,7 @@ impl<'a> ActiveSet<'a> {
         )?;
         let mut look = |lambda: &PetscVec| pulling.lasts(lambda);
         let watched = tight && !self.exact && self.watched;
-        let look: Option<&mut Look> = if watched { Some(&mut look) } else { None };
+        let look: Option<&mut IterateMonitor> = if watched { Some(&mut look) } else { None };
         let inner = method.reach(&mut self.at, control, look)?;
         let ended_early = inner.stopped == Stopped::Look;
         let tolerance = match inner.residuals.last() {
@@ -343,7 +343,7 @@ impl<'a> ActiveSet<'a> {
             self.at.place(&method.dual())?;
         }
         let (residuals, estimate) = self.last;
-        let run = Run {
+        let run = KrylovRun {
             iterations: steps.iter().map(|s| s.iterations).sum(),
             status,
             residuals,

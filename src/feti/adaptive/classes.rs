@@ -9,9 +9,9 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use parallel::exchange::{any, exchange};
 
@@ -24,7 +24,7 @@ const SMOOTH: f64 = 1e2;
 const EQUAL: f64 = 2.0;
 
 /// Dual dofs of one subdomain that the same subdomains share, in the order of body dof.
-pub struct Class {
+pub struct DualClass {
     /// The subdomains, increasing.
     pub sharers: Vec<u32>,
     /// The body dofs; the lowest one names the class.
@@ -35,7 +35,7 @@ pub struct Class {
     pub entries: Vec<u32>,
 }
 
-impl Class {
+impl DualClass {
     /// Unique over all bodies.
     pub fn name(&self) -> u64 {
         self.dofs[0]
@@ -45,10 +45,10 @@ impl Class {
 /// The classes of a subdomain, of the dofs at the positions of Γ that `chosen` selects.
 pub fn of(
     sub: &Subdomain,
-    sharing: &Sharing,
-    local: &Scaled,
+    sharing: &DofSharing,
+    local: &ScaledSubdomain,
     chosen: impl Fn(usize) -> bool,
-) -> Vec<Class> {
+) -> Vec<DualClass> {
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
     for (i, &dof) in local.gamma().interface[..local.gamma().n_delta]
         .iter()
@@ -64,7 +64,7 @@ pub fn of(
     let class = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
         members.sort_unstable();
         let (dofs, at) = members.into_iter().unzip();
-        Class {
+        DualClass {
             sharers,
             dofs,
             at,
@@ -78,9 +78,9 @@ pub fn of(
 pub fn rough(
     comm: &SimpleCommunicator,
     problem: &Problem,
-    sharing: &Sharing,
-    locals: &[Scaled],
-    classes: &[Vec<Class>],
+    sharing: &DofSharing,
+    locals: &[ScaledSubdomain],
+    classes: &[Vec<DualClass>],
 ) -> Vec<Vec<bool>> {
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, list) in classes.iter().enumerate() {
@@ -96,7 +96,7 @@ pub fn rough(
     }
     let mut names = exchange(comm, outgoing);
     names.sort_unstable();
-    let of = |class: &Class| names.binary_search(&class.name()).is_ok();
+    let of = |class: &DualClass| names.binary_search(&class.name()).is_ok();
     classes
         .iter()
         .map(|list| list.iter().map(of).collect())
@@ -104,7 +104,7 @@ pub fn rough(
 }
 
 /// Whether stiffness varies along the interface of any subdomain. Equal subdomains are examined once. Collective.
-pub fn anywhere(comm: &SimpleCommunicator, problem: &Problem, locals: &[Scaled]) -> bool {
+pub fn anywhere(comm: &SimpleCommunicator, problem: &Problem, locals: &[ScaledSubdomain]) -> bool {
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {
@@ -136,7 +136,7 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
 }
 
 /// Places in the class of the dofs of the averages that are primal already.
-pub fn means(local: &Scaled, class: &Class) -> Vec<Vec<usize>> {
+pub fn means(local: &ScaledSubdomain, class: &DualClass) -> Vec<Vec<usize>> {
     let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
     let inside = local
         .gamma()
@@ -149,7 +149,7 @@ pub fn means(local: &Scaled, class: &Class) -> Vec<Vec<usize>> {
 }
 
 /// Notes the entries of B_D in the rows of every class.
-pub fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [Class]) {
+pub fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [DualClass]) {
     let mut of = vec![None; n_gamma];
     for (c, class) in classes.iter().enumerate() {
         class.at.iter().for_each(|&i| of[i] = Some(c));

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::problem::LocalProblem;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::{Problem, Subdomain};
 use crate::Result;
@@ -12,16 +12,17 @@ use cholesky::interior::{Condenser, NoFactor};
 use cholesky::symbolic::Keep;
 use parallel::team::Team;
 
-/// Gives the subdomains the constraints that [`find`](super::constraints::find) added. Subdomains that were equal stay
+/// Gives the subdomains the constraints that
+/// [`find_adaptive_constraints`](super::constraints::find_adaptive_constraints) added. Subdomains that were equal stay
 /// equal, but a turned copy with a constraint gets operators of its own. The old operators are dropped one by one, so
 /// that two operators of every subdomain never exist at the same time.
 pub fn constrain(
     problem: &Problem,
     jump: &Jump,
-    locals: Vec<Scaled>,
+    locals: Vec<ScaledSubdomain>,
     team: &Team,
     fails: impl Fn(&Subdomain, NoFactor) -> crate::Error + Sync,
-) -> Result<Vec<Scaled>> {
+) -> Result<Vec<ScaledSubdomain>> {
     let added = |j: usize| {
         let list = jump.averages[j].iter();
         list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
@@ -52,13 +53,13 @@ pub fn constrain(
         Mutex::new(Some((locals[j].kind().clone(), turned)))
     };
     let held: Vec<_> = kinds.iter().map(held).collect();
-    let factor = |(local, first): (&Scaled, &usize)| match locals[*first].turn() {
+    let factor = |(local, first): (&ScaledSubdomain, &usize)| match locals[*first].turn() {
         Some(_) => local.factor / locals[*first].factor,
         None => local.factor,
     };
     let factors: Vec<f64> = locals.iter().zip(&first).map(factor).collect();
     let kept = locals.into_iter().zip(&grows);
-    let kept: Vec<Option<Scaled>> = kept.map(|(l, grows)| (!grows).then_some(l)).collect();
+    let kept: Vec<Option<ScaledSubdomain>> = kept.map(|(l, grows)| (!grows).then_some(l)).collect();
     let renewed = team.map(kinds.len(), |k| {
         let (j, old) = (kinds[k], held[k].lock().expect("nobody panics").take());
         let (mut old, turned) = old.expect("each is taken once");
@@ -75,8 +76,8 @@ pub fn constrain(
     });
     let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
-    let of = |((kept, j), factor): ((Option<Scaled>, &usize), f64)| {
-        kept.unwrap_or_else(|| Scaled::new(renewed[place(j)].clone(), factor))
+    let of = |((kept, j), factor): ((Option<ScaledSubdomain>, &usize), f64)| {
+        kept.unwrap_or_else(|| ScaledSubdomain::new(renewed[place(j)].clone(), factor))
     };
     Ok(kept.into_iter().zip(&first).zip(factors).map(of).collect())
 }

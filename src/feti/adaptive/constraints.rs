@@ -9,15 +9,15 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::classes::Class;
-use super::pencil::Part;
+use super::classes::DualClass;
+use super::pencil::PencilTerm;
 use crate::feti::adaptive::classes;
 use crate::feti::adaptive::pencil;
 use crate::feti::interface::entities::Average;
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::{multiply, Dense};
 use bytemuck::{Pod, Zeroable};
@@ -28,12 +28,12 @@ use parallel::team::Team;
 /// Finds the constraints that bring the eigenvalues of every class below τ and adds them to `jump.averages`. The
 /// entries of `jump` are on interface positions. Returns the number of constraints of each body over all ranks; the
 /// list is empty if no class is tested. Collective.
-pub fn find(
+pub fn find_adaptive_constraints(
     comm: &SimpleCommunicator,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     jump: &mut Jump,
-    locals: &[Scaled],
+    locals: &[ScaledSubdomain],
     team: &Team,
     adaptive: Adaptive,
 ) -> Vec<usize> {
@@ -47,7 +47,7 @@ pub fn find(
     if !all && !classes::anywhere(comm, problem, locals) {
         return Vec::new();
     }
-    let mut classes: Vec<Vec<Class>> = (0..locals.len())
+    let mut classes: Vec<Vec<DualClass>> = (0..locals.len())
         .map(|j| classes::of(&problem.local[j], sharing, &locals[j], |_| true))
         .collect();
     if !all {
@@ -68,8 +68,8 @@ pub fn find(
     // Each sharer sends its part to the rank of the lowest sharer.
     let rank = comm.rank() as usize;
     let rank_of = |s: u32| sharing.locations.rank(s);
-    let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
-    let of = |j: usize, class: &Class| ClassSharer::new(class, problem.local[j].index as u32);
+    let part = |j: usize, class: &DualClass| pencil_term(problem, jump, &locals[j], j, class);
+    let of = |j: usize, class: &DualClass| ClassSharer::new(class, problem.local[j].index as u32);
     let (mut entries, mut names) = (Parcels::for_each_rank(comm), Parcels::for_each_rank(comm));
     for (j, list) in classes.iter().enumerate() {
         for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
@@ -80,12 +80,12 @@ pub fn find(
     }
     let entries = exchange_by_rank(comm, entries);
     let names = exchange_by_rank(comm, names);
-    let mut received: HashMap<ClassSharer, Part> = HashMap::new();
+    let mut received: HashMap<ClassSharer, PencilTerm> = HashMap::new();
     let entries = entries.iter().flat_map(Parcels::iter);
     for ((orders, numbers), (of, names)) in entries.zip(names.iter().flat_map(Parcels::iter)) {
         received.insert(of, part_of(orders, numbers, names));
     }
-    let mut here: HashMap<ClassSharer, (usize, &Class)> = HashMap::new();
+    let mut here: HashMap<ClassSharer, (usize, &DualClass)> = HashMap::new();
     let mut owned = Vec::new();
     for (j, list) in classes.iter().enumerate() {
         for class in list {
@@ -98,7 +98,7 @@ pub fn find(
     }
     // Equal subdomains that meet in the same way have the same functionals.
     let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
-    let mut kinds: Vec<(usize, &Class)> = Vec::new();
+    let mut kinds: Vec<(usize, &DualClass)> = Vec::new();
     let kind_of: Vec<usize> = owned
         .iter()
         .map(|&(j, class)| {
@@ -126,7 +126,7 @@ pub fn find(
                 None => received[&key].clone(),
             }
         };
-        let parts: Vec<Part> = class.sharers.iter().map(own).collect();
+        let parts: Vec<PencilTerm> = class.sharers.iter().map(own).collect();
         pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
     });
     let found: Vec<&Vec<Vec<f64>>> = kind_of.iter().map(|&k| &of_kind[k]).collect();
@@ -170,8 +170,8 @@ pub fn find(
 fn signature(
     problem: &Problem,
     jump: &Jump,
-    locals: &[Scaled],
-    sharers: &[(usize, &Class)],
+    locals: &[ScaledSubdomain],
+    sharers: &[(usize, &DualClass)],
 ) -> Vec<u64> {
     fn number<K: std::hash::Hash + Eq>(seen: &mut HashMap<K, u64>, key: K) -> u64 {
         let next = seen.len() as u64;
@@ -201,7 +201,7 @@ fn signature(
 }
 
 /// Names of the primal dofs of local subdomain `j`. Subdomains that share a primal dof have the same name for it.
-fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]> {
+fn names(sub: &Subdomain, jump: &Jump, local: &ScaledSubdomain, j: usize) -> Vec<[u64; 2]> {
     let vertices = local.gamma().interface[local.gamma().n_delta..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
     let averages = jump.averages[j].iter().map(|a| [1, a.key]);
@@ -211,7 +211,13 @@ fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]
 }
 
 /// The contribution of local subdomain `j` to the eigenproblem of a class.
-fn part(problem: &Problem, jump: &Jump, local: &Scaled, j: usize, class: &Class) -> Part {
+fn pencil_term(
+    problem: &Problem,
+    jump: &Jump,
+    local: &ScaledSubdomain,
+    j: usize,
+    class: &DualClass,
+) -> PencilTerm {
     let sub = &problem.local[j];
     let (n, at) = (class.at.len(), &class.at);
     let q = lifted(jump, j, class);
@@ -226,7 +232,7 @@ fn part(problem: &Problem, jump: &Jump, local: &Scaled, j: usize, class: &Class)
             psi.set(k, p, local.gamma().psi.get(i, p));
         }
     }
-    Part {
+    PencilTerm {
         a,
         t: local.t_on(at),
         psi,
@@ -238,7 +244,7 @@ fn part(problem: &Problem, jump: &Jump, local: &Scaled, j: usize, class: &Class)
 
 /// Q_c: the matrix of B_Dᵀ B from the differences to the last sharer to the copy in local subdomain `j`. It is read
 /// from the entries of B_D.
-fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
+fn lifted(jump: &Jump, j: usize, class: &DualClass) -> Dense {
     let (n, q) = (class.at.len(), class.sharers.len());
     let columns = jump.columns.of(j);
     let place: HashMap<u32, usize> = class.at.iter().map(|&i| i as u32).zip(0..).collect();
@@ -285,7 +291,7 @@ struct ClassSharer {
 }
 
 impl ClassSharer {
-    fn new(class: &Class, subdomain: u32) -> ClassSharer {
+    fn new(class: &DualClass, subdomain: u32) -> ClassSharer {
         ClassSharer {
             class: class.name(),
             subdomain: subdomain.into(),
@@ -294,19 +300,19 @@ impl ClassSharer {
 }
 
 /// The orders N, n and n_Π of the matrices of a part.
-fn orders(part: &Part) -> [usize; 3] {
+fn orders(part: &PencilTerm) -> [usize; 3] {
     [&part.a, &part.t, &part.sigma].map(|m| m.rows)
 }
 
 /// The part with these orders, [`numbers`] and names.
-fn part_of([jumps, n, n_pi]: [usize; 3], mut numbers: &[f64], names: &[[u64; 2]]) -> Part {
+fn part_of([jumps, n, n_pi]: [usize; 3], mut numbers: &[f64], names: &[[u64; 2]]) -> PencilTerm {
     let mut matrix = |rows: usize, cols: usize| {
         let (data, rest) = numbers.split_at(rows * cols);
         numbers = rest;
         let data = data.to_vec();
         Dense { rows, cols, data }
     };
-    Part {
+    PencilTerm {
         a: matrix(jumps, jumps),
         t: matrix(n, n),
         psi: matrix(n, n_pi),
@@ -317,7 +323,7 @@ fn part_of([jumps, n, n_pi]: [usize; 3], mut numbers: &[f64], names: &[[u64; 2]]
 }
 
 /// The entries of the matrices of a part, and its stiffnesses.
-fn numbers(part: &Part) -> impl Iterator<Item = f64> + '_ {
+fn numbers(part: &PencilTerm) -> impl Iterator<Item = f64> + '_ {
     let matrices = [&part.a, &part.t, &part.psi, &part.sigma];
     let entries = matrices.into_iter().flat_map(|m| &m.data);
     entries.chain(&part.stiff).copied()

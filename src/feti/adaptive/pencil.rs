@@ -29,7 +29,7 @@ const SAME: f64 = 1e-6;
 
 /// The contribution of one of the subdomains.
 #[derive(Debug, Clone, Default)]
-pub struct Part {
+pub struct PencilTerm {
     /// Q_cᵀ S_c Q_c, N × N with N = (q − 1) n.
     pub a: Dense,
     /// T on the n dofs, n × n.
@@ -46,7 +46,7 @@ pub struct Part {
 
 /// The functionals of n dofs to be made primal, so that A ≤ τ M where they vanish. `means` has, for each average that
 /// is primal already, the places of its dofs.
-pub fn functionals(parts: &[Part], means: &[Vec<usize>], tau: f64) -> Vec<Vec<f64>> {
+pub fn functionals(parts: &[PencilTerm], means: &[Vec<usize>], tau: f64) -> Vec<Vec<f64>> {
     let n = parts[0].t.rows;
     let order = parts[0].a.rows;
     let mut a = Dense::zeros(order, order);
@@ -129,7 +129,7 @@ fn factor(a: &Dense, scale: &[f64]) -> Dense {
 }
 
 /// M⁻¹ = B T Bᵀ + B Ψ Σ⁺ Ψᵀ Bᵀ with the differences to the last subdomain as B.
-fn compliance(parts: &[Part]) -> Dense {
+fn compliance(parts: &[PencilTerm]) -> Dense {
     let n = parts[0].t.rows;
     let (last, others) = parts.split_last().expect("shared by at least two");
     let order = others.len() * n;

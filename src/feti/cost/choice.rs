@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use mpi::topology::SimpleCommunicator;
 
 use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{CoarseFunctions, PcType, Scaling};
 use crate::substructures::Problem;
@@ -47,7 +47,7 @@ const OF_ITS_OWN: f64 = 0.5;
 
 /// Cost of both preconditioners on this rank, from sizes alone. The sum over the ranks does not depend on their number.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Estimate {
+struct PreconditionerCost {
     /// Seconds of set-up that M_C adds.
     setup: f64,
     /// Seconds that M_C adds to an iteration.
@@ -58,18 +58,18 @@ struct Estimate {
 
 /// The quantities that determine the number of iterations.
 #[derive(Debug, Clone, Copy)]
-struct Shape {
+struct IterationModel {
     /// H_b/H_s.
     across: f64,
     in_space: bool,
     inequalities: bool,
 }
 
-impl Estimate {
+impl PreconditionerCost {
     /// Whether M_C pays. In space it pays if it takes less time. In the plane it pays if its additional time is less
     /// than the time of all iterations with M_D. It is the safer choice there, because neither subdomains nor
     /// coefficients change its number of iterations much.
-    fn pays(&self, shape: Shape) -> bool {
+    fn pays(&self, shape: IterationModel) -> bool {
         let contact = usize::from(shape.inequalities);
         let (few, growth, own) = if shape.in_space {
             (ITERATIONS_IN_SPACE, GROWTH[1 + contact], self.iteration)
@@ -97,7 +97,7 @@ pub fn scaling(problem: &Problem) -> Scaling {
 pub fn preconditioner(
     comm: &SimpleCommunicator,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     jump: &Jump,
     functions: CoarseFunctions,
 ) -> PcType {
@@ -116,7 +116,7 @@ pub fn preconditioner(
     let seen = total(comm, neighbours.iter().sum());
     let (n, bodies) = (problem.n_subdomains as f64, problem.n_bodies as f64);
     let space = usize::from(seen / n > PLANE);
-    let mut sum = Estimate::default();
+    let mut sum = PreconditionerCost::default();
     let mut primal = 0.0;
     for (j, m) in neighbours.iter().enumerate() {
         let averages = match functions {
@@ -139,14 +139,14 @@ pub fn preconditioner(
     let [setup, more, iteration, primal, inequalities] = all;
     let order = primal / SHARED_BY[space] / bodies;
     let part = if space == 1 { OF_ITS_OWN } else { 1.0 };
-    let estimate = Estimate {
+    let estimate = PreconditionerCost {
         // A of every body is factored, and applied in every iteration.
         setup: part * setup + bodies * FLOP * order.powi(3) / 3.0,
         more: more + bodies * DENSE_BY_ITSELF * order.powi(2),
         iteration,
     };
     let dimension = if space == 1 { 3.0 } else { 2.0 };
-    let shape = Shape {
+    let shape = IterationModel {
         across: (n / bodies).powf(1.0 / dimension),
         in_space: space == 1,
         inequalities: inequalities > 0.0,

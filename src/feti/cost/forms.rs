@@ -67,7 +67,7 @@ impl Cost {
 }
 
 /// Data about a kind of subdomain before its factorisation.
-pub struct Kind<'a> {
+pub struct SubdomainKind<'a> {
     /// Index of the local subdomain that represents it.
     pub j: usize,
     /// The representative.
@@ -82,7 +82,7 @@ pub struct Kind<'a> {
     pub copies: usize,
 }
 
-impl Kind<'_> {
+impl SubdomainKind<'_> {
     /// Entries of the sparse factors in the given form.
     pub fn factor_entries(&self, form: OperatorForm) -> usize {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
@@ -118,9 +118,13 @@ impl Kind<'_> {
 }
 
 /// One of each kind of subdomain. `first` has the representative of every local subdomain.
-pub fn kinds<'a>(problem: &'a Problem, jump: &'a Jump, first: &[Likeness]) -> Vec<Kind<'a>> {
+pub fn kinds<'a>(
+    problem: &'a Problem,
+    jump: &'a Jump,
+    first: &[Likeness],
+) -> Vec<SubdomainKind<'a>> {
     let own = (0..first.len()).filter(|&j| first[j].first == j);
-    let of = |j: usize| Kind {
+    let of = |j: usize| SubdomainKind {
         j,
         sub: &problem.local[j],
         delta: &jump.delta[j],
@@ -135,7 +139,7 @@ pub fn kinds<'a>(problem: &'a Problem, jump: &'a Jump, first: &[Likeness]) -> Ve
 /// `memory` bytes where sparse solves are possible. They are preferred if S itself is needed (`wants_s`). Kinds with a
 /// form `so_far` keep it if memory suffices: nothing is counted for them.
 pub fn choose(
-    kinds: &[Kind],
+    kinds: &[SubdomainKind],
     so_far: &[Option<OperatorForm>],
     team: &Team,
     asked: Operators,
@@ -196,7 +200,7 @@ fn sparse_entries(factors: &[Symbolic; 2]) -> usize {
 }
 
 /// Bytes of S and T.
-fn dense_bytes(kind: &Kind) -> f64 {
+fn dense_bytes(kind: &SubdomainKind) -> f64 {
     let n_delta = kind.delta.len() as f64;
     let n_gamma = n_delta + kind.primal.len() as f64;
     let each = if kind.copies < MANY { 4.0 } else { 8.0 };
@@ -205,7 +209,7 @@ fn dense_bytes(kind: &Kind) -> f64 {
 
 /// The cost of a kind; `None` if dense operators are computed so fast that no analysis pays, unless memory is short
 /// (`always`).
-fn cost(kind: &Kind, always: bool) -> Option<Cost> {
+fn cost(kind: &SubdomainKind, always: bool) -> Option<Cost> {
     let (k, x) = (&kind.sub.k, kind.sub.coordinates.as_deref());
     let interface = [kind.delta, kind.primal].concat();
     let (n_gamma, n_delta) = (interface.len() as f64, kind.delta.len() as f64);

@@ -4,7 +4,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::{choice, forms};
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::interface::{entities, location};
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::kernel::{self, SentFactors};
@@ -23,7 +23,7 @@ use petsc::Session;
 
 /// Sizes over all ranks.
 #[derive(Debug, Clone)]
-pub struct Sizes {
+pub struct ProblemSizes {
     /// Rows of B_loc.
     pub multipliers_local: usize,
     /// Rows of B_gl.
@@ -54,7 +54,7 @@ pub struct Sizes {
     pub dense_bytes: f64,
 }
 
-impl Sizes {
+impl ProblemSizes {
     /// Counts the sizes with the chosen constraints. Collective.
     ///
     /// # Errors
@@ -64,12 +64,12 @@ impl Sizes {
         problem: &Problem,
         team: &Team,
         constraints: Primal,
-    ) -> Result<Sizes> {
+    ) -> Result<ProblemSizes> {
         let comm = session.comm();
         session.agree(entities::check(problem, constraints))?;
         session.agree(location::check(comm, problem))?;
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
-        let sharing = Sharing::new(comm, problem, &weights, constraints)?;
+        let sharing = DofSharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);
         let first = equal::representatives(problem, &jump, team);
         let kinds = forms::kinds(problem, &jump, &first);
@@ -124,7 +124,7 @@ impl Sizes {
         sum_all(comm, &mut sums);
         sum_all(comm, &mut primal);
         let kernels = kernels(comm, problem);
-        Ok(Sizes {
+        Ok(ProblemSizes {
             free: free_motions(comm, problem, &jump, &kernels),
             multipliers_local: jump.n_local,
             multipliers_global: jump.n_global - jump.n_local,

@@ -5,14 +5,14 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::balance::Balance;
+use super::balanced_operator::BalancedOperator;
 use super::panels::Panels;
 use super::sparse::Sparse;
 use crate::feti::deflation::sparse;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
-use crate::feti::projector::rows::Rows;
-use crate::feti::projector::sweep::{self, Column};
+use crate::feti::projector::rows::KernelRows;
+use crate::feti::projector::sweep::{self, MultiplierColumn};
 use crate::feti::settings::ProjectorKind;
 use crate::Result;
 use base::linalg::dense::Dense;
@@ -30,7 +30,7 @@ const DEPENDENT: f64 = 1e-10;
 const FEW: usize = 1000;
 
 /// Columns with their kernel part removed: Y − Q X.
-struct Split {
+struct SplitColumns {
     y: Panels,
     q: Panels,
 }
@@ -52,11 +52,11 @@ impl Inverse {
 }
 
 /// P_2 in terms of P W = W − Q G X.
-pub struct Matrices {
+pub struct DeflationMatrices {
     session: Session,
     /// P W and F P W.
-    w: Split,
-    fw: Split,
+    w: SplitColumns,
+    fw: SplitColumns,
     /// X, r × the number of columns.
     x: Dense,
     /// E = Wᵀ Pᵀ F P W.
@@ -65,16 +65,16 @@ pub struct Matrices {
     norms: Vec<f64>,
 }
 
-impl Matrices {
+impl DeflationMatrices {
     /// Applies F to the columns and builds the matrices. The pattern of `before` is taken over where it suffices.
     /// Collective.
     pub fn new(
         dual: &Dual,
         graph: &BodyGraph,
-        balance: &Balance,
-        columns: &[Column],
-        before: Option<&Matrices>,
-    ) -> Result<Matrices> {
+        balance: &BalancedOperator,
+        columns: &[MultiplierColumn],
+        before: Option<&DeflationMatrices>,
+    ) -> Result<DeflationMatrices> {
         let (k, r) = (columns.len(), dual.natural.r);
         let like = dual.multipliers()?;
         let f = |x: &[PetscVec], y: &[PetscVec]| balance.f(dual, x, y);
@@ -86,7 +86,7 @@ impl Matrices {
             let natural = &dual.natural;
             let start = natural.columns.start();
             let near = |b: usize| graph.near[b].clone();
-            let named = |rows: &Rows| rows.named(natural.known());
+            let named = |rows: &KernelRows| rows.named(natural.known());
             let g = Panels::new(&sweep::kernel_columns(&named(&natural.g), start, near));
             g.add_product(&w, &mut x, (0, 0));
             sum_all(dual.comm(), &mut x.data);
@@ -106,7 +106,7 @@ impl Matrices {
             fqg = Panels::new(&sweep::images(&like, graph, &columns, f)?);
             qg = Panels::new(&columns);
         }
-        let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
+        let (w, fw) = (SplitColumns { y: w, q: qg }, SplitColumns { y: fw, q: fqg });
         let (e, diagonal) = match r {
             0 if k > FEW => {
                 let known = before.and_then(|b| match &b.e {
@@ -125,7 +125,7 @@ impl Matrices {
                 (Inverse::Dense(factor), diagonal)
             }
         };
-        Ok(Matrices {
+        Ok(DeflationMatrices {
             session: dual.stiffness.session.clone(),
             w,
             fw,
@@ -172,7 +172,7 @@ impl Matrices {
     }
 
     /// (Y − Q X)ᵀ v.
-    fn transpose(&self, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
+    fn transpose(&self, of: &SplitColumns, v: &PetscVec) -> Result<Vec<f64>> {
         let (k, r) = (self.x.cols, self.x.rows);
         let mut c = vec![0.0; k + r];
         {
@@ -189,7 +189,7 @@ impl Matrices {
     }
 
     /// v ← v + α (Y − Q X) c.
-    fn add(&self, alpha: f64, of: &Split, c: &[f64], v: &PetscVec) -> Result<()> {
+    fn add(&self, alpha: f64, of: &SplitColumns, c: &[f64], v: &PetscVec) -> Result<()> {
         let mut v = v.array_mut()?;
         of.y.add(alpha, c, &mut v);
         let mut kernels = vec![0.0; self.x.rows];
@@ -200,8 +200,8 @@ impl Matrices {
 }
 
 /// Where the panels of these columns are, from the positions of the bodies: in the middle of those that they reach.
-fn positions(columns: &[Column], at: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let middle = |panel: &[Column]| {
+fn positions(columns: &[MultiplierColumn], at: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let middle = |panel: &[MultiplierColumn]| {
         let bodies = &panel[0].reach;
         let sum = |d: usize| bodies.iter().map(|&b| at[b as usize][d]).sum::<f64>();
         [0, 1, 2].map(|d| sum(d) / bodies.len().max(1) as f64)
@@ -211,7 +211,7 @@ fn positions(columns: &[Column], at: &[[f64; 3]]) -> Vec<[f64; 3]> {
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
-fn dense(comm: &SimpleCommunicator, w: &Split, f: &Split, x: &Dense) -> Dense {
+fn dense(comm: &SimpleCommunicator, w: &SplitColumns, f: &SplitColumns, x: &Dense) -> Dense {
     let k = x.cols;
     // The products of all columns, the kernel columns last: [Y Q]ᵀ F [Y Q].
     let m = k + w.q.cols;

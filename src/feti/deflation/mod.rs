@@ -16,28 +16,28 @@
 //!     P W = W − Q G X,    F P W = F W − F Q G X,    X = (Gᵀ Q G)⁻¹ Gᵀ W
 //! ```
 
-pub mod balance;
+pub mod balanced_operator;
 pub mod matrices;
 pub mod panels;
 pub mod pencil;
+pub mod profitability;
 pub mod search;
 pub mod sparse;
 pub mod whole;
-pub mod worth;
 
 use std::time::Instant;
 
 use super::cost::variation::JUMPS;
 use super::operators::dual::Dual;
 use super::projector::graph::BodyGraph;
-use super::projector::sweep::Column;
+use super::projector::sweep::MultiplierColumn;
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
 use crate::feti::projector::sweep;
 use crate::substructures::Problem;
 use crate::Result;
-use balance::Balance;
-use matrices::Matrices;
+use balanced_operator::BalancedOperator;
+use matrices::DeflationMatrices;
 use parallel::exchange::total;
 use pencil::Pencil;
 use whole::Whole;
@@ -90,10 +90,10 @@ pub struct Deflation {
     /// Result and cost of the search.
     pub cost: Cost,
     graph: BodyGraph,
-    balance: Balance,
+    balance: BalancedOperator,
     /// M⁻¹ P_iᵀ F_i μ with all rows of the search.
-    columns: Vec<Column>,
-    matrices: Matrices,
+    columns: Vec<MultiplierColumn>,
+    matrices: DeflationMatrices,
     /// Whether the rows that hold are too few for so many vectors: P_2 is I then.
     idle: bool,
     /// Whether the user has asked for a bound of the spectrum: the vectors are then used whatever they cost.
@@ -112,9 +112,9 @@ impl Deflation {
             vectors: vec![0; graph.n],
             ..Cost::default()
         };
-        let mut jumps: Vec<(u32, Column)> = Vec::new();
+        let mut jumps: Vec<(u32, MultiplierColumn)> = Vec::new();
         let owners: Vec<usize> = problem.local.iter().map(|s| s.body).collect();
-        let mut balance = Balance::new(dual, &owners, graph.n);
+        let mut balance = BalancedOperator::new(dual, &owners, graph.n);
         let pencil = Pencil::new(problem, dual, &graph)?;
         balance.take(dual, &pencil)?;
         let found = search::top(&pencil, tau, most, |slot, _, image| {
@@ -122,7 +122,7 @@ impl Deflation {
                 .clone()
                 .map(|i| (pencil.rows[i], image[i]));
             let body = pencil.bodies[slot];
-            let column = Column {
+            let column = MultiplierColumn {
                 entries: entries.filter(|e| e.1 != 0.0).collect(),
                 reach: graph.near[body as usize].clone(),
             };
@@ -140,11 +140,11 @@ impl Deflation {
         cost.capped.sort_unstable();
         // Sort by body, so that the order does not depend on the colours.
         jumps.sort_by_key(|j| j.0);
-        let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
+        let jumps: Vec<MultiplierColumn> = jumps.into_iter().map(|j| j.1).collect();
         let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| {
             dual.m_many(x, y)
         })?;
-        let matrices = Matrices::new(dual, &graph, &balance, &columns, None)?;
+        let matrices = DeflationMatrices::new(dual, &graph, &balance, &columns, None)?;
         cost.dependent = columns.len() - matrices.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
         Ok(Deflation {
@@ -168,7 +168,7 @@ impl Deflation {
         let whole = Whole::new(dual, self)?;
         search::top(&whole, bound, most, |_, vector, _| {
             let entries = vector.iter().enumerate().filter(|e| *e.1 != 0.0);
-            found.push(Column {
+            found.push(MultiplierColumn {
                 entries: entries.map(|(row, &v)| (row as u32, v)).collect(),
                 reach: everywhere.clone(),
             });
@@ -176,7 +176,8 @@ impl Deflation {
         let n = found.len();
         if n > 0 {
             self.columns.extend(found);
-            self.matrices = Matrices::new(dual, &self.graph, &self.balance, &self.columns, None)?;
+            self.matrices =
+                DeflationMatrices::new(dual, &self.graph, &self.balance, &self.columns, None)?;
             self.cost.shared += n;
         }
         self.cost.seconds += clock.elapsed().as_secs_f64();
@@ -201,7 +202,7 @@ impl Deflation {
         if self.idle {
             return Ok(());
         }
-        let mask = |column: &Column| Column {
+        let mask = |column: &MultiplierColumn| MultiplierColumn {
             entries: column
                 .entries
                 .iter()
@@ -210,9 +211,9 @@ impl Deflation {
                 .collect(),
             reach: column.reach.clone(),
         };
-        let columns: Vec<Column> = self.columns.iter().map(mask).collect();
+        let columns: Vec<MultiplierColumn> = self.columns.iter().map(mask).collect();
         let before = Some(&self.matrices);
-        self.matrices = Matrices::new(dual, &self.graph, &self.balance, &columns, before)?;
+        self.matrices = DeflationMatrices::new(dual, &self.graph, &self.balance, &columns, before)?;
         Ok(())
     }
 
@@ -223,7 +224,7 @@ impl Deflation {
     }
 
     /// P_2 as matrices; `None` without vectors.
-    pub fn matrices(&self) -> Option<&Matrices> {
+    pub fn matrices(&self) -> Option<&DeflationMatrices> {
         (!self.columns.is_empty() && !self.idle).then_some(&self.matrices)
     }
 }

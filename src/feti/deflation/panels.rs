@@ -3,12 +3,12 @@
 
 use std::ops::Range;
 
-use crate::feti::projector::sweep::Column;
+use crate::feti::projector::sweep::MultiplierColumn;
 use base::linalg::dense::Dense;
 
 /// Consecutive columns with the same reach.
 #[derive(Debug, Default)]
-struct Panel {
+struct ColumnPanel {
     columns: Range<usize>,
     /// Owned rows with an entry in some column, increasing.
     rows: Vec<u32>,
@@ -19,18 +19,18 @@ struct Panel {
 /// A matrix with this rank's rows of multipliers and a few columns for every body.
 #[derive(Debug, Default)]
 pub struct Panels {
-    panels: Vec<Panel>,
+    panels: Vec<ColumnPanel>,
     /// Number of columns.
     pub cols: usize,
 }
 
 impl Panels {
     /// The columns in the order that they come in.
-    pub fn new(columns: &[Column]) -> Panels {
+    pub fn new(columns: &[MultiplierColumn]) -> Panels {
         let mut panels = Vec::new();
         let mut first = 0;
         for group in columns.chunk_by(|a, b| a.reach == b.reach) {
-            panels.push(Panel::new(first, group));
+            panels.push(ColumnPanel::new(first, group));
             first += group.len();
         }
         Panels {
@@ -79,8 +79,9 @@ impl Panels {
     /// row in common, by increasing a and b. Panels without common rows cost nothing.
     pub fn products(&self, other: &Panels, mut visit: impl FnMut(usize, usize, &Dense)) {
         let places = other.places();
-        let rows_of =
-            |p: &Panel| Dense::from_fn(p.values.cols, p.rows.len(), |j, i| p.values.get(i, j));
+        let rows_of = |p: &ColumnPanel| {
+            Dense::from_fn(p.values.cols, p.rows.len(), |j, i| p.values.get(i, j))
+        };
         let right: Vec<Dense> = other.panels.iter().map(rows_of).collect();
         // The blocks of one panel, and which of them are in use.
         let mut blocks: Vec<Dense> = vec![Dense::default(); other.panels.len()];
@@ -131,8 +132,8 @@ impl Panels {
     }
 }
 
-impl Panel {
-    fn new(first: usize, columns: &[Column]) -> Panel {
+impl ColumnPanel {
+    fn new(first: usize, columns: &[MultiplierColumn]) -> ColumnPanel {
         let all = || columns.iter().flat_map(|c| &c.entries);
         // The rows are marked in a table, not sorted: the columns have thousands of entries and mostly the same rows.
         const NONE: u32 = u32::MAX;
@@ -151,7 +152,7 @@ impl Panel {
                 out[place[row as usize] as usize] += value;
             }
         }
-        Panel {
+        ColumnPanel {
             columns: first..first + columns.len(),
             rows,
             values,

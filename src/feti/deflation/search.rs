@@ -78,7 +78,7 @@ pub struct TopOfPencil {
 }
 
 /// An F-orthonormal basis of each body.
-struct Basis {
+struct KrylovBasis {
     q: Vec<Vec<f64>>,
     fq: Vec<Vec<f64>>,
     /// h[s][k][body] = q_kᵀ F M⁻¹ F q_s for the expanded s, with k up to the number of vectors after the expansion.
@@ -95,7 +95,7 @@ pub fn top(
 ) -> Result<Vec<TopOfPencil>> {
     let n = pencil.parts().len();
     let mut found = vec![TopOfPencil::default(); n];
-    let mut basis = Basis {
+    let mut basis = KrylovBasis {
         q: Vec::new(),
         fq: Vec::new(),
         h: Vec::new(),
@@ -131,7 +131,7 @@ pub fn top(
     Ok(found)
 }
 
-impl Basis {
+impl KrylovBasis {
     /// Applies the operator to the next vector, orthogonalises the image and adds it to the basis.
     fn expand(&mut self, pencil: &impl Pencils, found: &[TopOfPencil]) -> Result<()> {
         let s = self.h.len();

@@ -6,11 +6,11 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::panels::Panels;
-use crate::feti::projector::blocks::Blocks;
+use crate::feti::projector::blocks::ColumnBlocks;
 use crate::feti::projector::gram::Gram;
-use crate::feti::projector::gtg::Side;
-use crate::feti::projector::refined::Refined;
-use crate::feti::projector::shape::{Shape, Sharing};
+use crate::feti::projector::gram_pattern::{FactorSharing, GramPattern};
+use crate::feti::projector::gtg::InverseSide;
+use crate::feti::projector::refined::RefinedFactor;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
@@ -19,15 +19,15 @@ use parallel::exchange::{gather_all, sum_all};
 /// E as a sparse matrix, factored.
 pub struct Sparse {
     /// Its pattern, which is kept while it suffices.
-    pub shape: Rc<Shape>,
-    inverse: Refined,
+    pub shape: Rc<GramPattern>,
+    inverse: RefinedFactor,
 }
 
 impl Sparse {
     /// Factors `e`. Collective.
-    pub fn new(shape: Rc<Shape>, e: Csr) -> Sparse {
+    pub fn new(shape: Rc<GramPattern>, e: Csr) -> Sparse {
         let factor = Gram::new(&shape, e.clone());
-        let inverse = Refined::symmetric(&shape, factor, e);
+        let inverse = RefinedFactor::symmetric(&shape, factor, e);
         Sparse { shape, inverse }
     }
 
@@ -38,7 +38,7 @@ impl Sparse {
 
     /// c ← E⁺ c, the same on every rank. Collective.
     pub fn solve(&self, c: &mut [f64]) {
-        self.inverse.solve(c, Side::Plain);
+        self.inverse.solve(c, InverseSide::Plain);
     }
 }
 
@@ -48,8 +48,8 @@ pub fn product(
     comm: &SimpleCommunicator,
     [w, fw]: [&Panels; 2],
     at: Option<&[[f64; 3]]>,
-    known: Option<Rc<Shape>>,
-) -> (Rc<Shape>, Csr) {
+    known: Option<Rc<GramPattern>>,
+) -> (Rc<GramPattern>, Csr) {
     let starts = w.starts();
     let n = starts.len() - 1;
     let mut blocks: Vec<(usize, usize, Dense)> = Vec::new();
@@ -64,8 +64,13 @@ pub fn product(
     }
     let mut lists: Vec<Vec<u32>> = lists.into_iter().map(distinct).collect();
     let new = |lists: &[Vec<u32>]| {
-        let order = || (Blocks::of_bodies(lists, &starts), at.map(<[_]>::to_vec));
-        Shape::ordered(comm, lists, &starts, order, &Sharing::any()).into()
+        let order = || {
+            (
+                ColumnBlocks::of_bodies(lists, &starts),
+                at.map(<[_]>::to_vec),
+            )
+        };
+        GramPattern::ordered(comm, lists, &starts, order, &FactorSharing::any()).into()
     };
     let shape = match known {
         Some(shape) if shape.pattern.contains(&lists) => shape,

@@ -38,17 +38,17 @@ pub type DofMap<T> = std::collections::HashMap<u64, T, BuildHasherDefault<DofHas
 const BITS: usize = 16;
 
 /// Hashes that came once, and more than once.
-struct Table {
+struct HashTable {
     once: Vec<u64>,
     more: Vec<u64>,
     shift: u32,
 }
 
-impl Table {
+impl HashTable {
     /// For about `n` numbers.
-    fn new(n: usize) -> Table {
+    fn new(n: usize) -> HashTable {
         let bits = (BITS * n).next_power_of_two().max(64);
-        Table {
+        HashTable {
             once: vec![0; bits / 64],
             more: vec![0; bits / 64],
             shift: 64 - bits.trailing_zeros(),
@@ -101,7 +101,7 @@ pub fn candidates(
     };
     if size == 1 {
         let all = problem.local.iter().flat_map(|sub| &sub.dofs);
-        let mut table = Table::new(problem.local.iter().map(|sub| sub.dofs.len()).sum());
+        let mut table = HashTable::new(problem.local.iter().map(|sub| sub.dofs.len()).sum());
         all.for_each(|&dof| table.see(dof));
         in_rows().for_each(|dof| table.mark(dof));
         return select(&mut |dof| table.passes(dof));
@@ -113,7 +113,7 @@ pub fn candidates(
     };
     let named = spread(&mut in_rows());
     let held = spread(&mut problem.local.iter().flat_map(|s| s.dofs.iter().copied()));
-    let mut table = Table::new(held.iter().map(Vec::len).sum());
+    let mut table = HashTable::new(held.iter().map(Vec::len).sum());
     held.iter().flatten().for_each(|&dof| table.see(dof));
     named.iter().flatten().for_each(|&dof| table.mark(dof));
     // One bit for each dof that was asked about, in the order of the questions.

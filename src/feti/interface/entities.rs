@@ -8,7 +8,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::sharing::Sharing;
+use super::sharing::DofSharing;
 use crate::feti::settings::Primal;
 use crate::substructures::{Entity, Problem, Subdomain};
 use crate::{Error, Result};
@@ -48,7 +48,7 @@ pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> 
 pub fn averages(
     comm: &SimpleCommunicator,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     primal: Primal,
 ) -> Result<Vec<Vec<Average>>> {
     let size = comm.size() as usize;
@@ -108,7 +108,7 @@ pub fn check(problem: &Problem, primal: Primal) -> Result<()> {
 /// vertices.
 fn average(
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     sub: &Subdomain,
     entity: &Entity,
     count: usize,
@@ -116,7 +116,7 @@ fn average(
     let mut dofs = Vec::new();
     for &i in &entity.dofs {
         let copies = sharing.shared(sub.dofs[i as usize]);
-        if Sharing::is_primal(copies) {
+        if DofSharing::is_primal(copies) {
             continue;
         }
         if copies.len().max(1) != count {

@@ -34,7 +34,7 @@ pub struct Copy {
 
 /// The copies of the dofs that this rank needs, and where the subdomains are that have them.
 #[derive(Debug, Default)]
-pub struct Sharing {
+pub struct DofSharing {
     /// Copies, by increasing subdomain, of two sets of dofs: those that a subdomain of this rank shares with another
     /// one, and those in rows that this rank provides.
     pub copies: DofMap<Vec<Copy>>,
@@ -63,7 +63,7 @@ struct DofCopy {
     primal: u64,
 }
 
-impl Sharing {
+impl DofSharing {
     /// Finds the copies, and the averages among the chosen constraints. `weights[j]` holds D of local subdomain j, by
     /// local dof. Collective.
     pub fn new(
@@ -71,7 +71,7 @@ impl Sharing {
         problem: &Problem,
         weights: &[Vec<f64>],
         constraints: Primal,
-    ) -> Result<Sharing> {
+    ) -> Result<DofSharing> {
         let size = comm.size() as usize;
         let home = |dof: u64| (dof % size as u64) as usize;
         let mut reports: Vec<Vec<DofCopy>> = vec![Vec::new(); size];
@@ -109,7 +109,7 @@ impl Sharing {
                 replies[r as usize].extend_from_slice(group);
             }
         }
-        let mut sharing = Sharing {
+        let mut sharing = DofSharing {
             copies: DofMap::default(),
             shared_dofs: Vec::new(),
             locations: Locations::own(comm, problem),

@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 
 use super::coupled::Coupled;
 use super::dependent;
-use super::scaling::Known;
-use crate::feti::interface::sharing::{Copy, Sharing};
+use super::scaling::ScalingCache;
+use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
@@ -16,7 +16,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// B of a block.
 #[derive(Debug)]
-pub enum Form {
+pub enum BlockForm {
     /// On (rows, dofs): the rows of a point where bodies meet. B_D has entries for all of these.
     Dense(Dense),
     /// Many rows, such as those of an interface.
@@ -29,7 +29,7 @@ pub struct Block {
     /// Owned rows of the block (indices among this rank's rows).
     pub rows: Range<usize>,
     /// B.
-    pub form: Form,
+    pub form: BlockForm,
     /// The dofs of a coupled block among those of all coupled blocks of this rank; empty for others.
     pub slots: Range<usize>,
     /// The body dofs that the rows touch.
@@ -54,7 +54,7 @@ struct Dof {
 /// One entry of B and B_D on its way to the rank of its subdomain.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-pub(crate) struct Entry {
+pub(crate) struct JumpBlockEntry {
     pub row: u32,
     contact: u32,
     pub subdomain: u32,
@@ -67,9 +67,9 @@ pub(crate) struct Entry {
     pub bd: f64,
 }
 
-impl Entry {
-    pub fn new(row: u32, copy: &Copy, contact: bool, [full, b, bd]: [f64; 3]) -> Entry {
-        Entry {
+impl JumpBlockEntry {
+    pub fn new(row: u32, copy: &Copy, contact: bool, [full, b, bd]: [f64; 3]) -> JumpBlockEntry {
+        JumpBlockEntry {
             row,
             contact: contact.into(),
             subdomain: copy.subdomain,
@@ -90,8 +90,8 @@ impl Block {
     /// The position of the block, if a subdomain of this rank knows it; that of these rows if it is coupled.
     pub fn place(&self, problem: &Problem, rows: &[usize]) -> Option<[f64; 3]> {
         let dofs = match &self.form {
-            Form::Dense(_) => (0..self.dofs.len()).collect(),
-            Form::Coupled(coupled) => coupled.dofs(rows).iter().map(|&j| j as usize).collect(),
+            BlockForm::Dense(_) => (0..self.dofs.len()).collect(),
+            BlockForm::Coupled(coupled) => coupled.dofs(rows).iter().map(|&j| j as usize).collect(),
         };
         let dofs: Vec<usize> = dofs;
         let copies = dofs.iter().flat_map(|&j| self.copies_of(j));
@@ -106,11 +106,11 @@ impl Block {
     /// The bodies with an entry in row `r`.
     pub fn bodies_of(&self, r: usize) -> Vec<u32> {
         match &self.form {
-            Form::Dense(b) => {
+            BlockForm::Dense(b) => {
                 let inside = (0..b.cols).filter(|&j| b.get(r, j) != 0.0);
                 inside.map(|j| self.dofs[j].body).collect()
             }
-            Form::Coupled(coupled) => {
+            BlockForm::Coupled(coupled) => {
                 let (dofs, values) = coupled.row(r);
                 let inside = dofs.iter().zip(values).filter(|e| *e.1 != 0.0);
                 inside.map(|e| self.dofs[*e.0 as usize].body).collect()
@@ -127,8 +127,8 @@ impl Block {
     /// Multipliers without forces, Bᵀ N = 0, are zero on all other rows in `on`. `None` if no row depends on others.
     pub fn dependent(&self, on: &[bool]) -> Option<(Vec<usize>, Cow<'_, Dense>)> {
         match &self.form {
-            Form::Dense(b) => Some(((0..on.len()).collect(), Cow::Borrowed(b))),
-            Form::Coupled(coupled) => {
+            BlockForm::Dense(b) => Some(((0..on.len()).collect(), Cow::Borrowed(b))),
+            BlockForm::Coupled(coupled) => {
                 let rows = coupled.dependent(on);
                 let b = (!rows.is_empty()).then(|| coupled.part(&rows))?;
                 Some((rows, Cow::Owned(b)))
@@ -140,8 +140,8 @@ impl Block {
     /// dependency by itself.
     pub fn dependent_sets(&self, on: &[bool]) -> Vec<(Vec<usize>, Cow<'_, Dense>)> {
         match &self.form {
-            Form::Dense(_) => self.dependent(on).into_iter().collect(),
-            Form::Coupled(coupled) => {
+            BlockForm::Dense(_) => self.dependent(on).into_iter().collect(),
+            BlockForm::Coupled(coupled) => {
                 let part = |rows: &Vec<usize>| Cow::Owned(coupled.part(rows));
                 let sets = coupled.dependent_sets(on);
                 sets.into_iter()
@@ -166,8 +166,8 @@ impl Block {
         &mut self,
         first: usize,
         active: &[bool],
-        known: &mut Known,
-        send: &mut impl FnMut(Entry),
+        known: &mut ScalingCache,
+        send: &mut impl FnMut(JumpBlockEntry),
     ) {
         self.hold(first, |_| true, active, known, send);
     }
@@ -180,8 +180,8 @@ impl Block {
         first: usize,
         change: impl Fn(usize) -> bool,
         active: &[bool],
-        known: &mut Known,
-        send: &mut impl FnMut(Entry),
+        known: &mut ScalingCache,
+        send: &mut impl FnMut(JumpBlockEntry),
     ) {
         // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is then the
         // same on all of them, as a function in W̃ must be.
@@ -191,18 +191,18 @@ impl Block {
             for copy in copies_of(dofs, copies, j) {
                 let full = value * copy.weight / dofs[j].weight;
                 let b = if active[r] { full } else { 0.0 };
-                send(Entry::new(row, copy, true, [full, b, bd]));
+                send(JumpBlockEntry::new(row, copy, true, [full, b, bd]));
             }
         };
         match &mut self.form {
-            Form::Dense(b) => {
+            BlockForm::Dense(b) => {
                 let scaling: Vec<f64> = dofs.iter().map(|dof| dof.scaling).collect();
                 let bd = known.block(b, &scaling, active);
                 for r in 0..active.len() {
                     (0..b.cols).for_each(|j| send(r, j, b.get(r, j), bd.get(r, j)));
                 }
             }
-            Form::Coupled(coupled) => {
+            BlockForm::Coupled(coupled) => {
                 coupled.hold(active);
                 for r in (0..active.len()).filter(|&r| change(r)) {
                     let (dofs, values) = coupled.row(r);
@@ -221,8 +221,8 @@ impl Block {
             return out;
         }
         match &self.form {
-            Form::Dense(b) => dependent::consistent(b, active, c),
-            Form::Coupled(coupled) => {
+            BlockForm::Dense(b) => dependent::consistent(b, active, c),
+            BlockForm::Coupled(coupled) => {
                 if coupled.reconcile(active, &mut out) {
                     dependent::keep(active, c, &mut out);
                 }
@@ -258,7 +258,7 @@ fn pick<T: Clone>(values: &[T], at: &[usize]) -> Vec<T> {
 /// local rows. Blocks with more than `many` rows are coupled.
 pub(crate) fn collect(
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     (first, many): (usize, usize),
 ) -> (Vec<usize>, Vec<Block>) {
     let mut order: Vec<usize> = (0..problem.rows.len()).collect();
@@ -280,7 +280,7 @@ pub(crate) fn collect(
             };
             let rows: Vec<_> = rows.iter().map(row).collect();
             let scaling: Vec<f64> = of_block.iter().map(|dof| dof.scaling).collect();
-            Form::Coupled(Box::new(Coupled::new(&rows, &scaling)))
+            BlockForm::Coupled(Box::new(Coupled::new(&rows, &scaling)))
         } else {
             let mut b = Dense::zeros(rows.len(), dofs.len());
             for (i, &r) in rows.iter().enumerate() {
@@ -289,11 +289,11 @@ pub(crate) fn collect(
                     b.set(i, j, b.get(i, j) + coefficient);
                 }
             }
-            Form::Dense(b)
+            BlockForm::Dense(b)
         };
         let coupled = match &form {
-            Form::Dense(_) => 0,
-            Form::Coupled(_) => dofs.len(),
+            BlockForm::Dense(_) => 0,
+            BlockForm::Coupled(_) => dofs.len(),
         };
         let end = start + rows.len();
         blocks.push(Block {
@@ -310,7 +310,7 @@ pub(crate) fn collect(
 }
 
 /// These dofs with their weights, and all their copies.
-fn weighed(dofs: &[u64], sharing: &Sharing) -> (Box<[Dof]>, Box<[Copy]>) {
+fn weighed(dofs: &[u64], sharing: &DofSharing) -> (Box<[Dof]>, Box<[Copy]>) {
     let lists = dofs.iter().map(|dof| &sharing.copies[dof]);
     let copies: Box<[Copy]> = lists.clone().flatten().copied().collect();
     // The fewest copies of a dof of each body.

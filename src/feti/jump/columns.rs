@@ -3,24 +3,24 @@
 //! Products with many small subdomains wait for memory. The lists of all subdomains follow each other, so that they are
 //! read in one go.
 
-use super::coupled::slots::Places;
+use super::coupled::slots::CoupledDofs;
 
 /// The entries of B and B_D in the columns of the local subdomains, one subdomain after the other.
 #[derive(Debug, Clone, Default)]
 pub struct JumpEntries {
     /// Where the lists of each subdomain begin, and the end.
-    start: Vec<Start>,
+    start: Vec<ListStart>,
     row: Vec<u32>,
     at: Vec<u32>,
     b: Vec<f64>,
     bd: Vec<f64>,
     contact: Vec<(u32, f64)>,
-    coupled: Vec<Places>,
+    coupled: Vec<CoupledDofs>,
 }
 
 /// Where lists begin.
 #[derive(Debug, Clone, Copy, Default)]
-struct Start {
+struct ListStart {
     entries: usize,
     contact: usize,
 }
@@ -57,7 +57,7 @@ impl JumpEntries {
     /// No subdomain yet, and room for `entries` entries, of which `contact` are those of B_gl.
     pub(super) fn with_room(entries: usize, contact: usize) -> JumpEntries {
         JumpEntries {
-            start: vec![Start::default()],
+            start: vec![ListStart::default()],
             row: Vec::with_capacity(entries),
             at: Vec::with_capacity(entries),
             b: Vec::with_capacity(entries),
@@ -84,14 +84,14 @@ impl JumpEntries {
 
     /// Ends the lists of a subdomain.
     pub(super) fn end(&mut self) {
-        self.start.push(Start {
+        self.start.push(ListStart {
             entries: self.row.len(),
             contact: self.contact.len(),
         });
     }
 
     /// Sets the dofs of each subdomain in coupled blocks.
-    pub(super) fn couple(&mut self, places: Vec<Places>) {
+    pub(super) fn couple(&mut self, places: Vec<CoupledDofs>) {
         self.coupled = places;
     }
 

@@ -15,9 +15,9 @@ use mpi::topology::SimpleCommunicator;
 
 use super::columns::JumpEntry;
 use super::operator::Jump;
-use crate::feti::adaptive::classes::{self, Class};
-use crate::feti::interface::sharing::Sharing;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::adaptive::classes::{self, DualClass};
+use crate::feti::interface::sharing::DofSharing;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Problem;
 use base::linalg::dense::{self, Dense, Scratch};
 use parallel::exchange::exchange_by_rank;
@@ -27,11 +27,11 @@ use parallel::parcels::Parcels;
 pub fn apply(
     comm: &SimpleCommunicator,
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     jump: &mut Jump,
-    locals: &[Scaled],
+    locals: &[ScaledSubdomain],
 ) {
-    let groups: Vec<Vec<Class>> = (0..locals.len())
+    let groups: Vec<Vec<DualClass>> = (0..locals.len())
         .map(|j| {
             let between = jump
                 .columns
@@ -73,7 +73,7 @@ pub fn apply(
     jump.columns = std::mem::take(&mut jump.columns).extended(&more);
 }
 
-impl Class {
+impl DualClass {
     /// (Σ S)⁻¹ S_k for every sharer; `None` if nothing holds the group.
     fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
         let m = self.at.len();

@@ -1,6 +1,6 @@
 //! The rows that a rank sees: its own, and those of other ranks that touch its subdomains.
 
-use super::blocks::Entry;
+use super::blocks::JumpBlockEntry;
 use base::linalg::sorted::distinct;
 
 /// The rows that have entries, numbered upwards: a table for the rank's own rows, a list for the few others.
@@ -16,7 +16,7 @@ pub(super) struct GhostRows {
 }
 
 impl GhostRows {
-    pub fn new(first: usize, n_owned: usize, entries: &[Entry]) -> GhostRows {
+    pub fn new(first: usize, n_owned: usize, entries: &[JumpBlockEntry]) -> GhostRows {
         let first = first as u32;
         let mut own = vec![None; n_owned];
         let mut others = Vec::new();

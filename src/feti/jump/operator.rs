@@ -9,16 +9,16 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use rustc_hash::FxHashMap;
 
-use super::blocks::{Block, Entry};
+use super::blocks::{Block, JumpBlockEntry};
 use super::columns::{JumpEntries, JumpEntry};
 use super::coupled::slots::Slots;
 use super::coupled::MANY;
+use super::entry_locations::{EntryLocation, EntryPlaces};
 use super::ghost_rows::GhostRows;
-use super::places::{EntryPlaces, Place};
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
-use crate::feti::interface::sharing::{Copy, Sharing};
+use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::jump::blocks;
 use crate::substructures::{Problem, RowKind};
 use parallel::exchange::{exchange, offsets, total};
@@ -54,7 +54,7 @@ pub struct Jump {
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
     /// The scalings of blocks so far.
-    pub(super) known: scaling::Known,
+    pub(super) known: scaling::ScalingCache,
     /// The block of each owned row of B_gl.
     pub(super) block_of: Vec<u32>,
     /// The dofs of coupled blocks.
@@ -96,7 +96,7 @@ impl Jump {
     }
 
     /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
-    pub fn new(comm: &SimpleCommunicator, problem: &Problem, sharing: &Sharing) -> Jump {
+    pub fn new(comm: &SimpleCommunicator, problem: &Problem, sharing: &DofSharing) -> Jump {
         Jump::coupling(comm, problem, sharing, MANY)
     }
 
@@ -105,11 +105,11 @@ impl Jump {
     pub fn coupling(
         comm: &SimpleCommunicator,
         problem: &Problem,
-        sharing: &Sharing,
+        sharing: &DofSharing,
         many: usize,
     ) -> Jump {
-        let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
-        let mut send = |entry: Entry| {
+        let mut outgoing: Vec<Vec<JumpBlockEntry>> = (0..comm.size()).map(|_| Vec::new()).collect();
+        let mut send = |entry: JumpBlockEntry| {
             outgoing[sharing.locations.rank(entry.subdomain)].push(entry);
         };
 
@@ -126,7 +126,7 @@ impl Jump {
                     for (c, copy) in group.iter().enumerate() {
                         let bd = scaling::pair_entry(&weights, (a, b), c);
                         let sign = f64::from(u8::from(c == a)) - f64::from(u8::from(c == b));
-                        send(Entry::new(row, copy, false, [sign, sign, bd]));
+                        send(JumpBlockEntry::new(row, copy, false, [sign, sign, bd]));
                     }
                     row += 1;
                 }
@@ -137,7 +137,7 @@ impl Jump {
         let locals_hold = std::iter::repeat_n(true, n_owned_local);
         let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
         let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
-        let mut known = scaling::Known::default();
+        let mut known = scaling::ScalingCache::default();
         for block in &mut blocks {
             let active = &active[block.rows.clone()];
             block.start(first, active, &mut known, &mut send);
@@ -213,7 +213,7 @@ impl Jump {
         self.inequality[i] || self.initial[i]
     }
 
-    fn receive(&mut self, problem: &Problem, sharing: &Sharing, entries: Vec<Entry>) {
+    fn receive(&mut self, problem: &Problem, sharing: &DofSharing, entries: Vec<JumpBlockEntry>) {
         let seen = GhostRows::new(self.first, self.n_owned, &entries);
         (self.ghosts, self.ghost_is_contact) = seen.all().unzip();
 
@@ -222,7 +222,7 @@ impl Jump {
         let here: FxHashMap<u32, u32> = numbered.map(|(s, j)| (s.index as u32, j)).collect();
         let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
         let of_contact = entries.iter().filter(|e| e.is_contact()).count();
-        let mut places: Vec<(u32, Place)> = Vec::with_capacity(of_contact);
+        let mut places: Vec<(u32, EntryLocation)> = Vec::with_capacity(of_contact);
         self.columns = JumpEntries::with_room(entries.len(), of_contact);
         for (k, e) in (0..).zip(&entries) {
             let row = seen.place(e.row);
@@ -244,7 +244,7 @@ impl Jump {
                 if e.is_contact() {
                     self.columns.push_contact(k, e.full);
                     let (subdomain, dof) = (j as u32, e.local);
-                    let place = Place {
+                    let place = EntryLocation {
                         subdomain,
                         dof,
                         entry: k,
@@ -261,7 +261,7 @@ impl Jump {
             }
             let shared = sharing.shared_dofs[j].iter().copied();
             let mut primal: Vec<u32> = shared
-                .filter(|&i| Sharing::is_primal(sharing.shared(sub.dofs[i as usize])))
+                .filter(|&i| DofSharing::is_primal(sharing.shared(sub.dofs[i as usize])))
                 .collect();
             corners.dedup();
             dual.dedup();
@@ -298,7 +298,7 @@ impl Jump {
 
 /// The dual dofs shared inside a body whose lowest subdomain lives on this rank, in a reproducible order, and the start
 /// (and end) of the rows of each local subdomain.
-fn local_groups<'a>(problem: &Problem, sharing: &'a Sharing) -> (Vec<&'a [Copy]>, Vec<usize>) {
+fn local_groups<'a>(problem: &Problem, sharing: &'a DofSharing) -> (Vec<&'a [Copy]>, Vec<usize>) {
     let mut groups = Vec::new();
     let mut start = vec![0];
     let mut rows = 0;
@@ -308,7 +308,7 @@ fn local_groups<'a>(problem: &Problem, sharing: &'a Sharing) -> (Vec<&'a [Copy]>
             let lowest = copies
                 .first()
                 .is_some_and(|c| c.subdomain as usize == sub.index);
-            if lowest && !Sharing::is_primal(copies) {
+            if lowest && !DofSharing::is_primal(copies) {
                 groups.push(copies);
                 rows += copies.len() * (copies.len() - 1) / 2;
             }

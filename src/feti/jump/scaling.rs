@@ -37,9 +37,9 @@ pub fn pair_entry(weights: &[f64], (a, b): (usize, usize), c: usize) -> f64 {
 
 /// B_D of blocks that are alike to the last bit: a regular scene has few that differ, and each takes an SVD.
 #[derive(Debug, Default)]
-pub struct Known(FxHashMap<Vec<u64>, Dense>);
+pub struct ScalingCache(FxHashMap<Vec<u64>, Dense>);
 
-impl Known {
+impl ScalingCache {
     /// More than these are no regular scene; they are forgotten.
     const MOST: usize = 2000;
 
@@ -51,7 +51,7 @@ impl Known {
         let values = b.data.iter().chain(weights).map(|v| v.to_bits());
         let rows = active.iter().map(|on| u64::from(*on));
         let key: Vec<u64> = rows.chain([b.cols as u64]).chain(values).collect();
-        if self.0.len() >= Known::MOST && !self.0.contains_key(&key) {
+        if self.0.len() >= ScalingCache::MOST && !self.0.contains_key(&key) {
             self.0.clear();
         }
         let of = self.0.entry(key);

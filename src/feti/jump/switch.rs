@@ -3,7 +3,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::blocks::Entry;
+use super::blocks::JumpBlockEntry;
 use super::operator::Jump;
 use parallel::exchange::exchange;
 
@@ -48,7 +48,7 @@ impl Jump {
     /// changed row get a new B_D. Returns the number of rows that changed on this rank. Collective.
     pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
         debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
-        let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
+        let mut outgoing: Vec<Vec<JumpBlockEntry>> = (0..comm.size()).map(|_| Vec::new()).collect();
         let pairs = self.active.iter().zip(active);
         let rows = (0..).zip(pairs).filter(|(_, (old, new))| old != new);
         let rows: Vec<usize> = rows.map(|(i, _)| i).collect();
@@ -67,7 +67,7 @@ impl Jump {
                 |r| old[r] != new[r],
                 new,
                 &mut self.known,
-                &mut |entry: Entry| {
+                &mut |entry: JumpBlockEntry| {
                     outgoing[self.locations.rank(entry.subdomain)].push(entry);
                 },
             );

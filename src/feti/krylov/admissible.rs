@@ -3,7 +3,7 @@
 use super::loads::Loads;
 use crate::feti::jump::operator::Jump;
 use crate::feti::method::LinearMethod;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::Result;
 use cholesky::lanes::LANES;
 use parallel::exchange::{any, max_all};
@@ -144,7 +144,7 @@ fn close(method: &LinearMethod, gaps: &[f64], u: &mut [Vec<f64>]) -> Result<()> 
     let moved = stiffness.by_batch(&batches, |locals, members| {
         let part = |&j: &usize| (&still[j][..], &work[j].y[..]);
         let parts: Vec<_> = members.iter().map(part).collect();
-        Scaled::recover_many(locals, &parts)
+        ScaledSubdomain::recover_many(locals, &parts)
     });
     for (u, v) in u.iter_mut().flatten().zip(moved.iter().flatten()) {
         *u -= v; /*                                           u ← u − H v               */

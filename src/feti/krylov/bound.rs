@@ -1,8 +1,8 @@
 //! The spectrum and the bound on it: the conditions for deflation.
 
 use super::eigenvalues;
-use super::iterate::{Run, Watch};
-use crate::feti::deflation::{self, worth, Cost, Deflation};
+use super::iterate::{KrylovRun, Watch};
+use crate::feti::deflation::{self, profitability, Cost, Deflation};
 use crate::feti::method::LinearMethod;
 use crate::feti::settings::{Adaptive, ProjectorKind};
 use crate::feti::spectrum::Spectrum;
@@ -50,24 +50,24 @@ impl LinearMethod {
             let dual = self.dual();
             let natural = &dual.natural;
             let (bodies, r) = (self.problem.n_bodies, natural.r);
-            if worth::is_cheap(bodies, r) {
+            if profitability::is_cheap(bodies, r) {
                 return 0.0;
             }
             // The graph of so many bodies takes time and memory on every rank.
-            if worth::is_never(bodies, r) {
+            if profitability::is_never(bodies, r) {
                 return f64::INFINITY;
             }
             let graph = natural.graph(&self.problem, &dual.stiffness);
-            let problem = worth::Problem {
+            let problem = profitability::ProblemKind {
                 wide: natural.projector == ProjectorKind::Preconditioner,
                 contact: self.facts.inequalities > 0,
             };
-            worth::from(graph, natural.columns.start(), problem)
+            profitability::from(graph, natural.columns.start(), problem)
         })
     }
 
     /// Notes an eigenvalue that a run has seen, if it would have been deflated with fewer bodies.
-    pub(super) fn note(&self, run: &Run) {
+    pub(super) fn note(&self, run: &KrylovRun) {
         let may = self.settings.adaptive == Adaptive::Auto && !self.is_deflated();
         let Some(seen) = run.estimate.filter(|_| may) else {
             return;

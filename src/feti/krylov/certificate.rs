@@ -4,7 +4,7 @@
 use super::leftover::Leftover;
 use crate::feti::jump::columns::JumpColumns;
 use crate::feti::operators::dual::Dual;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use base::linalg::strained::strained;
@@ -181,7 +181,7 @@ struct Examined {
 
 fn examine(
     (sub, u): (&Subdomain, &[f64]),
-    local: &Scaled,
+    local: &ScaledSubdomain,
     (columns, ghost): (JumpColumns<'_>, &[f64]),
     places: &[u32],
 ) -> Examined {

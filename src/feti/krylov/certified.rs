@@ -87,10 +87,10 @@ impl Uncertified {
 }
 
 /// A bound, or the reason why there is none.
-pub type Verdict = std::result::Result<Certified, Uncertified>;
+pub type CertificationResult = std::result::Result<Certified, Uncertified>;
 
 /// Displacements that satisfy all rows, and how far they are from a given u and from u* at most.
-struct Pair {
+struct FeasibleBound {
     /// ‖u − ũ‖_K.
     away: f64,
     /// A bound of ‖ũ − u*‖_K.
@@ -99,17 +99,17 @@ struct Pair {
 
 impl LinearMethod {
     /// A bound of the error of `solution`, whose rows must be those that hold now. Costs some iterations. Collective.
-    pub(crate) fn certified(&self, solution: &LinearSolution) -> Result<Verdict> {
+    pub(crate) fn certified(&self, solution: &LinearSolution) -> Result<CertificationResult> {
         self.certified_by(solution, STEPS)
     }
 
     /// The bound of the pair of `solution` alone, without iterations, and mostly without a lower bound. Collective.
-    pub(crate) fn bounded(&self, solution: &LinearSolution) -> Result<Verdict> {
+    pub(crate) fn bounded(&self, solution: &LinearSolution) -> Result<CertificationResult> {
         self.certified_by(solution, 0)
     }
 
     /// The bound with this many better pairs at most. Collective.
-    fn certified_by(&self, solution: &LinearSolution, steps: usize) -> Result<Verdict> {
+    fn certified_by(&self, solution: &LinearSolution, steps: usize) -> Result<CertificationResult> {
         let clock = Instant::now();
         let finite = solution.u.iter().flatten().all(|u| u.is_finite());
         let mut broken = [f64::from(u8::from(!finite))];
@@ -174,7 +174,7 @@ impl LinearMethod {
         &self,
         u: &[Vec<f64>],
         at: &LinearSolution,
-    ) -> Result<std::result::Result<Pair, Uncertified>> {
+    ) -> Result<std::result::Result<FeasibleBound, Uncertified>> {
         let Some(lambda) = feasible(self, &at.lambda)? else {
             return Ok(Err(Uncertified::Multipliers));
         };
@@ -203,7 +203,7 @@ impl LinearMethod {
             .zip(&moved.u)
             .map(|(a, b)| difference(a, b))
             .collect();
-        Ok(Ok(Pair {
+        Ok(Ok(FeasibleBound {
             away: self.energy_norm(&apart),
             error: (square.max(0.0) + inside.max(0.0) + 2.0 * open).sqrt(),
         }))

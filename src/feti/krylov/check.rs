@@ -1,9 +1,9 @@
 //! Identities of the theory, as relative defects that must be of the size of rounding (`-fetifeti_check`).
 
-use super::system::System;
+use super::system::DualSystem;
 use crate::feti::operators::dual::Dual;
-use crate::feti::operators::work::Work;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::operators::work::InterfaceBuffers;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::substructures::Problem;
 use crate::Result;
@@ -11,7 +11,10 @@ use parallel::exchange::max_all;
 use petsc::Vec as PetscVec;
 
 /// (name, relative defect) of each identity that applies to the problem. Collective.
-pub(crate) fn identities(problem: &Problem, system: &System) -> Result<Vec<(&'static str, f64)>> {
+pub(crate) fn identities(
+    problem: &Problem,
+    system: &DualSystem,
+) -> Result<Vec<(&'static str, f64)>> {
     let dual = &*system.dual();
     let check = Check {
         problem,
@@ -56,7 +59,7 @@ pub(crate) fn identities(problem: &Problem, system: &System) -> Result<Vec<(&'st
 
 struct Check<'a> {
     problem: &'a Problem,
-    system: &'a System,
+    system: &'a DualSystem,
     dual: &'a Dual,
 }
 
@@ -69,7 +72,7 @@ fn noise(seed: u64) -> f64 {
 
 impl Check<'_> {
     /// work.y: a function in W̃, discontinuous in the dual dofs, continuous in the vertices and averages.
-    fn torn(&self) -> Vec<Work> {
+    fn torn(&self) -> Vec<InterfaceBuffers> {
         let stiffness = &self.dual.stiffness;
         let mut work = stiffness.work();
         for (j, w) in work.iter_mut().enumerate() {
@@ -221,7 +224,11 @@ impl Check<'_> {
         let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
         let locals = self.problem.local.iter().zip(&stiffness.locals);
         let g: Vec<Vec<f64>> = locals
-            .map(|(sub, local)| Scaled::condense_many(&[local], &[&sub.f]).remove(0).1)
+            .map(|(sub, local)| {
+                ScaledSubdomain::condense_many(&[local], &[&sub.f])
+                    .remove(0)
+                    .1
+            })
             .collect();
         let lambda = self.dual.multipliers()?;
         lambda.set(0.0)?;
@@ -310,12 +317,12 @@ impl Check<'_> {
             w.v = z;
         }
         // This product is in double precision, whatever the precision of M⁻¹.
-        let multiply = |work: &mut [Work]| {
+        let multiply = |work: &mut [InterfaceBuffers]| {
             stiffness.team.for_each(work, |j, w| {
                 locals[j].apply_one(Operator::S, &w.v, &mut w.y);
             });
         };
-        let largest = |work: &[Work]| {
+        let largest = |work: &[InterfaceBuffers]| {
             let all = work.iter().flat_map(|w| &w.y);
             all.fold(0.0f64, |a, v| a.max(v.abs()))
         };

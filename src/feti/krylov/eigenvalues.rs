@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::shells;
-use super::system::System;
+use super::system::DualSystem;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
 use crate::Result;
@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 4e-7;
 ///
 /// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range
 /// of G are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
-pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
+pub fn exact(system: &Rc<DualSystem>, prefix: &str) -> Result<Option<Spectrum>> {
     let holds = system.dual().stiffness.jump.active.contains(&true);
     if !any(system.session.comm(), holds) {
         return Ok(None);

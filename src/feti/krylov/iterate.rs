@@ -1,8 +1,8 @@
 //! One run of the Krylov method: λ ← λ + P x with Pᵀ F P x = Pᵀ r.
 
 use super::residual::ROUNDING;
-use super::system::System;
-use super::tally::Start;
+use super::system::DualSystem;
+use super::tally::ClockReadings;
 use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
 use crate::status::Status;
@@ -20,7 +20,7 @@ const LOOK: f64 = 0.3;
 const OUTSIDE: f64 = 1e-8;
 
 /// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
-pub type Look<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;
+pub type IterateMonitor<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;
 
 /// Parameters of a run.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ pub struct Watch {
 
 /// Record of one run of the Krylov method.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct KrylovRun {
     /// Iterations.
     pub iterations: usize,
     /// Why it stopped.
@@ -79,9 +79,9 @@ pub struct Run {
     pub stopped: Stopped,
 }
 
-impl Run {
-    fn nothing_to_do(residual: f64) -> Run {
-        Run {
+impl KrylovRun {
+    fn nothing_to_do(residual: f64) -> KrylovRun {
+        KrylovRun {
             iterations: 0,
             status: Status::NothingToDo,
             residuals: vec![residual],
@@ -99,10 +99,10 @@ impl Run {
 
     /// This run, which was broken off, followed by a run with another preconditioner. The spectrum is that of the
     /// second run.
-    pub fn followed_by(self, more: Run) -> Run {
+    pub fn followed_by(self, more: KrylovRun) -> KrylovRun {
         let mut residuals = self.residuals;
         residuals.extend(&more.residuals);
-        Run {
+        KrylovRun {
             iterations: self.iterations + more.iterations,
             residuals,
             ..more
@@ -111,7 +111,7 @@ impl Run {
 
     /// Adds a further run of the same method. The spectrum is that of the longest run. A further run that stalls has
     /// met the rounding of the operator; the earlier result stands.
-    pub fn add(&mut self, more: Run) {
+    pub fn add(&mut self, more: KrylovRun) {
         if more.iterations > self.iterations {
             self.estimate = more.estimate;
         }
@@ -130,8 +130,8 @@ pub fn iterate(
     residual: &PetscVec,
     lambda: &PetscVec,
     control: &IterationControl,
-    look: Option<&mut Look>,
-) -> Result<Run> {
+    look: Option<&mut IterateMonitor>,
+) -> Result<KrylovRun> {
     let (system, ksp) = (&method.system, &method.ksp);
     let is_cg = ksp.type_name()? == "cg";
     let exact = system.keeps_to_v();
@@ -144,14 +144,14 @@ pub fn iterate(
     let nothing = (ROUNDING * control.size).max(control.tolerance);
     let mut start = residual.norm2()?;
     if start <= nothing {
-        return Ok(Run::nothing_to_do(start));
+        return Ok(KrylovRun::nothing_to_do(start));
     }
     // The part of the solution in range W, and in the span of earlier directions, is known before the iteration.
-    for known_part in [System::deflated_part, System::recycled_part] {
+    for known_part in [DualSystem::deflated_part, DualSystem::recycled_part] {
         known_part(system, residual, lambda)?;
         start = residual.norm2()?;
         if start <= nothing {
-            return Ok(Run::nothing_to_do(start));
+            return Ok(KrylovRun::nothing_to_do(start));
         }
     }
     if !(start.is_finite() && control.tolerance.is_finite()) {
@@ -164,7 +164,7 @@ pub fn iterate(
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
     if max_it == 0 {
         // PETSc's CG runs one iteration all the same, and writes beyond the arrays that it has for none.
-        return Ok(Run {
+        return Ok(KrylovRun {
             iterations: 0,
             status: Status::Krylov(ConvergedReason::its()),
             residuals: vec![start],
@@ -176,7 +176,7 @@ pub fn iterate(
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     ksp.record_residuals(max_it.clamp(0, 100_000) as usize + 1)?;
     rtol_of(control.tolerance / start)?;
-    let counted = Start::now();
+    let counted = ClockReadings::now();
     let solved = {
         let _running = system.run(control.observed.then_some(lambda), is_cg);
         let eigenvalue = control.watch.filter(|_| is_cg).map(|w| LargeEigenvalue {
@@ -215,7 +215,7 @@ pub fn iterate(
         system.p2(&x)?;
     }
     lambda.axpy(1.0, &x)?;
-    Ok(Run {
+    Ok(KrylovRun {
         iterations,
         status: Status::Krylov(ksp.converged_reason()?),
         residuals: ksp.residual_history()?,

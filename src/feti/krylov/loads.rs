@@ -6,14 +6,14 @@
 
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Problem;
 use cholesky::lanes::LANES;
 use parallel::exchange::highest;
 
 /// The data of the right-hand side of the dual problem.
 pub struct Loads {
-    /// K_II⁻¹ f_I of each local subdomain, as [`Scaled::condense_many`] leaves it.
+    /// K_II⁻¹ f_I of each local subdomain, as [`ScaledSubdomain::condense_many`] leaves it.
     pub interiors: Vec<Vec<f64>>,
     /// g of each local subdomain, length n_Γ.
     pub g: Vec<Vec<f64>>,
@@ -37,7 +37,7 @@ impl Loads {
         let batches = stiffness.batches(LANES);
         let condensed = stiffness.by_batch(&batches, |locals, members| {
             let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
-            Scaled::condense_many(locals, &loads)
+            ScaledSubdomain::condense_many(locals, &loads)
         });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
         let kernel = dual.natural.kernel_load(dual.comm(), f, &g);
@@ -50,10 +50,10 @@ impl Loads {
     }
 
     /// K_II⁻¹ f_I of local subdomain `j`, zero on Γ.
-    pub fn inside(&self, locals: &[Scaled], j: usize) -> Vec<f64> {
+    pub fn inside(&self, locals: &[ScaledSubdomain], j: usize) -> Vec<f64> {
         let local = &locals[j];
         let still = vec![0.0; local.gamma().n_gamma()];
-        Scaled::recover_many(&[local], &[(&self.interiors[j], &still)]).concat()
+        ScaledSubdomain::recover_many(&[local], &[(&self.interiors[j], &still)]).concat()
     }
 
     /// The largest displacement inside subdomains while their interfaces stay where they are. Collective.

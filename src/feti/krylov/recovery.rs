@@ -7,14 +7,14 @@
 use std::time::Instant;
 
 use super::certificate::{Certificate, Kkt};
-use super::iterate::Run;
+use super::iterate::KrylovRun;
 use super::leftover::Leftover;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::status::Status;
 use crate::Result;
 use cholesky::lanes::LANES;
@@ -56,7 +56,7 @@ impl LinearMethod {
     pub(crate) fn recover(
         &self,
         mut at: Iterate,
-        run: Run,
+        run: KrylovRun,
         solve_seconds: f64,
     ) -> Result<LinearSolution> {
         let clock = Instant::now();
@@ -130,6 +130,6 @@ pub(super) fn displacements(
     Ok(stiffness.by_batch(&batches, |locals, members| {
         let part = |&j: &usize| (&loads.interiors[j][..], &work[j].y[..]);
         let parts: Vec<_> = members.iter().map(part).collect();
-        Scaled::recover_many(locals, &parts)
+        ScaledSubdomain::recover_many(locals, &parts)
     }))
 }

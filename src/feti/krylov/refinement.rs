@@ -86,10 +86,14 @@ impl LinearMethod {
     }
 
     /// One step, which reduces the residual of the correction problem by the factor `reduction`. Collective.
-    pub(super) fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Step> {
+    pub(super) fn refined(
+        &self,
+        solution: &LinearSolution,
+        reduction: f64,
+    ) -> Result<RefinementStep> {
         let next = self.corrected(solution, reduction)?;
         let better = distance(&next.solution.kkt) < 0.5 * distance(&solution.kkt);
-        Ok(Step {
+        Ok(RefinementStep {
             better: better.then_some(next.solution),
             correction: next.converged.then_some(next.size),
         })
@@ -158,7 +162,7 @@ pub(super) struct Corrected {
 }
 
 /// The result of one step.
-pub(super) struct Step {
+pub(super) struct RefinementStep {
     /// The corrected solution, if the step has helped.
     pub better: Option<LinearSolution>,
     /// ‖du‖_K, if the correction problem was solved.

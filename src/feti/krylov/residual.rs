@@ -6,7 +6,7 @@
 
 use super::loads::Loads;
 use crate::feti::operators::dual::Dual;
-use crate::feti::operators::work::Work;
+use crate::feti::operators::work::InterfaceBuffers;
 use crate::Result;
 use parallel::exchange::{highest, total};
 use petsc::Vec as PetscVec;
@@ -18,7 +18,7 @@ pub const ROUNDING: f64 = 1e-14;
 /// The displacements of a λ and the remaining jumps.
 pub struct Residual {
     /// y = S̃⁺(g − Bᵀ λ) on every local subdomain.
-    pub work: Vec<Work>,
+    pub work: Vec<InterfaceBuffers>,
     /// B y − C λ − c on the rows that hold, zero on the others.
     pub r: PetscVec,
     /// ‖y‖₂ over all ranks.

@@ -13,8 +13,8 @@ use super::recovery::LinearSolution;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
-use crate::feti::projector::motion::Motion;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::projector::kernel_motion::KernelMotion;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
@@ -22,7 +22,7 @@ use base::linalg::union_find::UnionFind;
 use parallel::exchange::{min_all, sum_all};
 
 /// Motions of bodies that move together.
-struct Group {
+struct CoupledMotions {
     members: Vec<usize>,
     /// VᵀV of the members, and Vᵀu.
     gram: Dense,
@@ -71,8 +71,8 @@ impl LinearMethod {
     fn shorten(
         &self,
         dual: &Dual,
-        motions: &[Motion],
-        groups: &[Group],
+        motions: &[KernelMotion],
+        groups: &[CoupledMotions],
         (z, gaps): (&mut [f64], &mut [f64]),
         active: &[bool],
     ) {
@@ -115,7 +115,7 @@ impl LinearMethod {
 }
 
 /// R at all dofs of the local subdomains whose bodies move.
-fn kernels(dual: &Dual, motions: &[Motion], sizes: &[usize]) -> Vec<(usize, Dense)> {
+fn kernels(dual: &Dual, motions: &[KernelMotion], sizes: &[usize]) -> Vec<(usize, Dense)> {
     let natural = &dual.natural;
     let moved = distinct(
         motions
@@ -134,9 +134,10 @@ fn kernels(dual: &Dual, motions: &[Motion], sizes: &[usize]) -> Vec<(usize, Dens
     let of = |k: usize| {
         let (j, local) = (which[k], &locals[which[k]]);
         let kernel = &on_gamma[j];
-        let still = Scaled::condense_many(&[local], &[&vec![0.0; sizes[j]]]);
-        let columns = (0..kernel.cols)
-            .map(|c| Scaled::recover_many(&[local], &[(&still[0].0, kernel.col(c))]).concat());
+        let still = ScaledSubdomain::condense_many(&[local], &[&vec![0.0; sizes[j]]]);
+        let columns = (0..kernel.cols).map(|c| {
+            ScaledSubdomain::recover_many(&[local], &[(&still[0].0, kernel.col(c))]).concat()
+        });
         let data: Vec<f64> = columns.flatten().collect();
         let (rows, cols) = (data.len() / kernel.cols, kernel.cols);
         (j, Dense { rows, cols, data })
@@ -145,7 +146,7 @@ fn kernels(dual: &Dual, motions: &[Motion], sizes: &[usize]) -> Vec<(usize, Dens
 }
 
 /// Motions that have bodies in common, directly or through others.
-fn groups(dual: &Dual, motions: &[Motion]) -> Vec<Group> {
+fn groups(dual: &Dual, motions: &[KernelMotion]) -> Vec<CoupledMotions> {
     let columns = &dual.natural.columns;
     let mut first: BTreeMap<u32, usize> = BTreeMap::new();
     let mut sets = UnionFind::new(motions.len());
@@ -159,7 +160,7 @@ fn groups(dual: &Dual, motions: &[Motion]) -> Vec<Group> {
     for m in 0..motions.len() {
         members.entry(sets.find(m)).or_default().push(m);
     }
-    let group = |members: Vec<usize>| Group {
+    let group = |members: Vec<usize>| CoupledMotions {
         gram: Dense::zeros(members.len(), members.len()),
         along: vec![0.0; members.len()],
         members,
@@ -170,8 +171,8 @@ fn groups(dual: &Dual, motions: &[Motion]) -> Vec<Group> {
 /// VᵀV and Vᵀu of the groups. Collective.
 fn measure(
     dual: &Dual,
-    motions: &[Motion],
-    groups: &mut [Group],
+    motions: &[KernelMotion],
+    groups: &mut [CoupledMotions],
     kernels: &[(usize, Dense)],
     u: &[Vec<f64>],
 ) {

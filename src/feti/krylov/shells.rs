@@ -1,17 +1,17 @@
-//! The operators of [`System`] as PETSc's KSP and SLEPc's EPS take them: MatShells and a PCShell.
+//! The operators of [`DualSystem`] as PETSc's KSP and SLEPc's EPS take them: MatShells and a PCShell.
 
 use std::rc::Rc;
 
-use super::system::System;
+use super::system::DualSystem;
 use crate::Result;
 use petsc::{Mat, ShellMat, ShellPc, Vec as PetscVec};
 
 /// A product: (system, x, y) with y ← A x.
-type Product = fn(&System, &PetscVec, &PetscVec) -> Result<()>;
+type Product = fn(&DualSystem, &PetscVec, &PetscVec) -> Result<()>;
 
 /// An operator of the system.
 struct Shell {
-    system: Rc<System>,
+    system: Rc<DualSystem>,
     apply: Product,
     /// The product with the transpose; `None` for a symmetric operator.
     transpose: Option<Product>,
@@ -41,7 +41,7 @@ impl ShellPc for Shell {
     }
 }
 
-fn shell(system: &Rc<System>, apply: Product, transpose: Option<Product>) -> Box<Shell> {
+fn shell(system: &Rc<DualSystem>, apply: Product, transpose: Option<Product>) -> Box<Shell> {
     let system = system.clone();
     Box::new(Shell {
         system,
@@ -57,29 +57,29 @@ fn matrix(shell: Box<Shell>) -> Result<Mat> {
 }
 
 /// Pᵀ F P as a matrix. Collective.
-pub fn operator(system: &Rc<System>) -> Result<Mat> {
-    matrix(shell(system, System::apply, None))
+pub fn operator(system: &Rc<DualSystem>) -> Result<Mat> {
+    matrix(shell(system, DualSystem::apply, None))
 }
 
 /// P_2ᵀ Pᵀ F P P_2 as a matrix: the operator of CG with deflation. Collective.
-pub fn deflated_operator(system: &Rc<System>) -> Result<Mat> {
-    matrix(shell(system, System::apply_deflated, None))
+pub fn deflated_operator(system: &Rc<DualSystem>) -> Result<Mat> {
+    matrix(shell(system, DualSystem::apply_deflated, None))
 }
 
 /// P M⁻¹ Pᵀ as a matrix, with deflation if it is in use. Collective.
-pub fn preconditioner(system: &Rc<System>) -> Result<Mat> {
-    matrix(shell(system, System::precondition, None))
+pub fn preconditioner(system: &Rc<DualSystem>) -> Result<Mat> {
+    matrix(shell(system, DualSystem::precondition, None))
 }
 
 /// E = Π P as a matrix, with Π the orthogonal projection onto range B. From F (I − Π) = 0 and P (I − Π) = I − Π it
 /// follows that E is a projection with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With
 /// deflation the matrix is E P_2 E. Its range is the F-orthogonal complement of W in that space. Collective.
-pub fn range(system: &Rc<System>) -> Result<Mat> {
-    let transpose = Some(System::to_range_transpose as Product);
-    matrix(shell(system, System::to_range, transpose))
+pub fn range(system: &Rc<DualSystem>) -> Result<Mat> {
+    let transpose = Some(DualSystem::to_range_transpose as Product);
+    matrix(shell(system, DualSystem::to_range, transpose))
 }
 
 /// P M⁻¹ Pᵀ as the operator of a PCShell.
-pub fn preconditioner_shell(system: &Rc<System>) -> Box<dyn ShellPc> {
-    shell(system, System::precondition, None)
+pub fn preconditioner_shell(system: &Rc<DualSystem>) -> Box<dyn ShellPc> {
+    shell(system, DualSystem::precondition, None)
 }

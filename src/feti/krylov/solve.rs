@@ -11,7 +11,7 @@
 
 use std::time::Instant;
 
-use super::iterate::{iterate, IterationControl, Look as LookAt, Run};
+use super::iterate::{iterate, IterateMonitor as LookAt, IterationControl, KrylovRun};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
@@ -46,7 +46,7 @@ const SUSPICIOUS: f64 = 1e-9;
 
 /// When the judge looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
+pub enum JudgeTiming {
     /// Before the first iteration, because there may be nothing left to iterate on.
     Before,
     /// After an iteration to the tolerance.
@@ -55,7 +55,7 @@ pub enum Look {
 
 /// Judges displacements. Returns the factor by which the residual should fall further, or `None`. Before the first
 /// iteration the factor is not used: anything but `None` lets the iteration begin.
-pub type Judge<'a> = dyn Fn(&[Vec<f64>], Look) -> Result<Option<f64>> + 'a;
+pub type Judge<'a> = dyn Fn(&[Vec<f64>], JudgeTiming) -> Result<Option<f64>> + 'a;
 
 impl LinearMethod {
     /// Solves the equations on the rows that hold until the tolerance is reached and `enough`, if given, is satisfied.
@@ -100,14 +100,19 @@ impl LinearMethod {
 
     /// Whether λ₀ is the solution already, as the judge sees it: a run without iterations, with the displacements of
     /// λ₀, rigid motions included. Otherwise `None`, and the residual is as it was. `r` is ‖Pᵀ r‖. Collective.
-    fn at_once(&self, at: &mut Iterate, r: f64, enough: Option<&Judge>) -> Result<Option<Run>> {
+    fn at_once(
+        &self,
+        at: &mut Iterate,
+        r: f64,
+        enough: Option<&Judge>,
+    ) -> Result<Option<KrylovRun>> {
         let Some(enough) = enough.filter(|_| r <= SUSPICIOUS * at.residual.size) else {
             return Ok(None);
         };
         at.place(&self.dual())?;
         let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-        if enough(&u, Look::Before)?.is_none() {
-            return Ok(Some(Run {
+        if enough(&u, JudgeTiming::Before)?.is_none() {
+            return Ok(Some(KrylovRun {
                 iterations: 0,
                 status: Status::NothingToDo,
                 residuals: vec![r],
@@ -127,11 +132,11 @@ impl LinearMethod {
         at: &mut Iterate,
         control: IterationControl,
         mut look: Option<&mut LookAt>,
-    ) -> Result<Run> {
+    ) -> Result<KrylovRun> {
         if self.is_blind()? {
             self.search(None)?;
         }
-        let mut so_far: Option<Run> = None;
+        let mut so_far: Option<KrylovRun> = None;
         let mut starts = 0;
         loop {
             let control = IterationControl {
@@ -173,11 +178,11 @@ impl LinearMethod {
     fn meet(
         &self,
         at: &mut Iterate,
-        mut run: Run,
+        mut run: KrylovRun,
         control: IterationControl,
         target: &Target,
         enough: Option<&Judge>,
-    ) -> Result<Run> {
+    ) -> Result<KrylovRun> {
         let IterationControl {
             mut tolerance,
             mut size,
@@ -198,7 +203,7 @@ impl LinearMethod {
                     break;
                 };
                 let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-                let Some(factor) = enough(&u, Look::After)? else {
+                let Some(factor) = enough(&u, JudgeTiming::After)? else {
                     break;
                 };
                 asked += 1;

@@ -10,7 +10,7 @@ use std::cell::{Cell, Ref, RefCell, RefMut};
 
 use super::recycling::Recycle;
 use super::tally::Tally;
-use crate::feti::deflation::matrices::Matrices;
+use crate::feti::deflation::matrices::DeflationMatrices;
 use crate::feti::deflation::Deflation;
 use crate::feti::operators::dual::Dual;
 use crate::substructures::Problem;
@@ -21,7 +21,7 @@ use petsc::{signals, Session, Vec as PetscVec};
 const HEED: usize = 4;
 
 /// F, M⁻¹, P, P_2, and the directions of earlier iterations.
-pub struct System {
+pub struct DualSystem {
     pub(super) session: Session,
     dual: RefCell<Dual>,
     /// P_2, where it is in use.
@@ -48,7 +48,7 @@ struct Running {
 }
 
 /// Marks the iteration as ended when it is dropped.
-pub struct RunningGuard<'a>(&'a System);
+pub struct RunningGuard<'a>(&'a DualSystem);
 
 impl Drop for RunningGuard<'_> {
     fn drop(&mut self) {
@@ -56,12 +56,12 @@ impl Drop for RunningGuard<'_> {
     }
 }
 
-impl System {
+impl DualSystem {
     /// The dual problem of `dual`, without deflation. At most `recycle` directions are kept from load to load.
     /// Collective.
-    pub fn new(session: &Session, dual: Dual, recycle: usize) -> Result<System> {
+    pub fn new(session: &Session, dual: Dual, recycle: usize) -> Result<DualSystem> {
         let x = dual.multipliers()?;
-        Ok(System {
+        Ok(DualSystem {
             session: session.clone(),
             y: x.duplicate()?,
             x,
@@ -159,7 +159,7 @@ impl System {
         self.running.borrow().as_ref()?.start.clone()
     }
 
-    fn p2_matrices(&self) -> Option<Ref<'_, Matrices>> {
+    fn p2_matrices(&self) -> Option<Ref<'_, DeflationMatrices>> {
         let deflation = self.deflation.borrow();
         Ref::filter_map(deflation, |d| d.as_ref()?.matrices()).ok()
     }

@@ -21,17 +21,17 @@ pub struct Tally {
 }
 
 /// Readings of clocks and counters at the start of an iteration.
-pub struct Start {
+pub struct ClockReadings {
     sent: Traffic,
     times: Times,
     clock: Instant,
     petsc: Option<petsc::Counters>,
 }
 
-impl Start {
+impl ClockReadings {
     /// Reads clocks and counters.
-    pub fn now() -> Start {
-        Start {
+    pub fn now() -> ClockReadings {
+        ClockReadings {
             sent: traffic::sent(),
             times: clock::spent(),
             petsc: petsc::counters(),

@@ -12,7 +12,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use mpi::traits::Communicator;
 
-use crate::feti::interface::sharing::{Copy, Sharing};
+use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
 use crate::Result;
@@ -22,7 +22,7 @@ use parallel::halo::Halo;
 use petsc::Vec as PetscVec;
 
 /// A dual dof of a subdomain that other subdomains of its body share.
-struct Place {
+struct SharedDualDof {
     /// Position in Γ.
     at: u32,
     /// Index of the sum over its copies.
@@ -34,7 +34,7 @@ struct Place {
 /// E_D of all bodies.
 pub(crate) struct Averaging {
     /// By local subdomain.
-    places: Vec<Vec<Place>>,
+    places: Vec<Vec<SharedDualDof>>,
     /// Positions in Γ of shared vertices where bodies do not touch: they keep their values.
     vertices: Vec<Vec<u32>>,
     /// Number of slots that several ranks add to. They come first.
@@ -55,7 +55,11 @@ pub(crate) enum Transposition {
 
 impl Averaging {
     /// Numbers the shared dofs. Collective.
-    pub fn new(problem: &Problem, sharing: &Sharing, stiffness: &Stiffness) -> Result<Averaging> {
+    pub fn new(
+        problem: &Problem,
+        sharing: &DofSharing,
+        stiffness: &Stiffness,
+    ) -> Result<Averaging> {
         let (session, jump) = (&stiffness.session, &stiffness.jump);
         let comm = session.comm();
         let me = comm.rank() as usize;
@@ -110,11 +114,11 @@ impl Averaging {
             let place = |(dof, at, weight)| {
                 let next = slots.len() as u32;
                 let slot = *slots.entry(dof).or_insert(next);
-                Place { at, slot, weight }
+                SharedDualDof { at, slot, weight }
             };
             here.into_iter().map(place).collect()
         });
-        let places: Vec<Vec<Place>> = places.collect();
+        let places: Vec<Vec<SharedDualDof>> = places.collect();
         let vector = PetscVec::mpi(session, own.len())?;
         let numbers: Vec<u32> = ghosts.iter().map(|g| g.0).collect();
         Ok(Averaging {

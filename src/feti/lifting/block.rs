@@ -13,11 +13,11 @@ use std::ops::Range;
 
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use base::linalg::dense::{multiply, Dense};
 
 /// An order of Γ and of the columns in which Z_c is a matrix of few blocks.
-struct Groups {
+struct BlockPermutation {
     /// Position in Γ of each row.
     rows: Vec<u32>,
     /// For each column, its column in the recipe.
@@ -26,8 +26,8 @@ struct Groups {
     members: Vec<(Range<usize>, Vec<Range<usize>>)>,
 }
 
-impl Groups {
-    fn new(recipe: &Recipe) -> Groups {
+impl BlockPermutation {
+    fn new(recipe: &Recipe) -> BlockPermutation {
         let support = recipe.support();
         let mut by_rows: BTreeMap<&[u64], Vec<u32>> = BTreeMap::new();
         for (rows, c) in support.iter().zip(0..) {
@@ -57,7 +57,7 @@ impl Groups {
             )
         });
         let members = members.collect();
-        Groups {
+        BlockPermutation {
             rows,
             columns,
             members,
@@ -78,8 +78,8 @@ fn runs(inside: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
 }
 
 /// Z_cᵀ S Z_c in the columns of the recipe; only the lower triangle is valid. `local` has a dense S.
-pub(crate) fn block(local: &Scaled, recipe: &Recipe, functions: &[Functions]) -> Dense {
-    let groups = Groups::new(recipe);
+pub(crate) fn block(local: &ScaledSubdomain, recipe: &Recipe, functions: &[Functions]) -> Dense {
+    let groups = BlockPermutation::new(recipe);
     let s = local.s_in_order(&groups.rows);
     let whole = recipe.build(functions);
     let (n, cols) = (groups.rows.len(), groups.columns.len());

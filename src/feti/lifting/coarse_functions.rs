@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use mpi::traits::Communicator;
 
 use super::interpolation::Functions;
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
@@ -38,10 +38,10 @@ struct Contribution {
     columns: Vec<u32>,
     /// (position in Γ of the target, row of the source, factor).
     rows: Vec<(u32, u32, f64)>,
-    source: Source,
+    source: ColumnSource,
 }
 
-enum Source {
+enum ColumnSource {
     /// Functions of a subdomain of this rank.
     Local(usize),
     /// Rows that another rank has sent, those of one contribution.
@@ -51,7 +51,7 @@ enum Source {
 /// The recipes of every local subdomain; exchanges rows of Ψ between ranks.
 pub(crate) fn recipes(
     problem: &Problem,
-    sharing: &Sharing,
+    sharing: &DofSharing,
     stiffness: &Stiffness,
     functions: &[Functions],
 ) -> Vec<Recipe> {
@@ -112,7 +112,7 @@ pub(crate) fn recipes(
                     from,
                     columns: columns(j),
                     rows,
-                    source: Source::Local(j),
+                    source: ColumnSource::Local(j),
                 });
             } else {
                 let columns = columns(j);
@@ -138,7 +138,7 @@ pub(crate) fn recipes(
             from,
             columns: columns.to_vec(),
             rows: dofs.iter().zip(0..).map(row).collect(),
-            source: Source::Remote(Dense {
+            source: ColumnSource::Remote(Dense {
                 rows: dofs.len(),
                 cols: columns.len(),
                 data: values.to_vec(),
@@ -207,8 +207,8 @@ impl Recipe {
         let mut z = Dense::zeros(self.rows, self.columns.len());
         for contribution in &self.contributions {
             let source = match &contribution.source {
-                Source::Local(j) => &functions[*j].psi,
-                Source::Remote(values) => values,
+                ColumnSource::Local(j) => &functions[*j].psi,
+                ColumnSource::Remote(values) => values,
             };
             for (k, &column) in contribution.columns.iter().enumerate() {
                 let (z, values) = (z.col_mut(column as usize), source.col(k));
@@ -235,8 +235,8 @@ impl Recipe {
                 out.extend([pair(at, row), factor.to_bits()]);
             }
             match &c.source {
-                Source::Local(j) => out.push(kind(*j)),
-                Source::Remote(values) => out.extend(values.data.iter().map(|v| v.to_bits())),
+                ColumnSource::Local(j) => out.push(kind(*j)),
+                ColumnSource::Remote(values) => out.extend(values.data.iter().map(|v| v.to_bits())),
             }
         }
         out.extend(self.vertices.iter().map(|&(at, c)| pair(at, c)));

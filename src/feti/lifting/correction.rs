@@ -23,11 +23,11 @@ use super::averaging::Averaging;
 use super::coarse_functions::recipes;
 use super::factor::{shares, BodyFactor};
 use super::interpolation::Functions;
-use super::matrix::Sums;
+use super::matrix::LiftingSums;
 use super::stored::Stored;
-use crate::feti::interface::sharing::Sharing;
+use crate::feti::interface::sharing::DofSharing;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::operators::work::{Columns, Work};
+use crate::feti::operators::work::{InterfaceBuffers, InterfaceColumns};
 use crate::feti::primal::matrix::Blocks;
 use crate::feti::settings::CoarseFunctions;
 use crate::substructures::Problem;
@@ -38,7 +38,7 @@ use petsc::Vec as PetscVec;
 
 /// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
 pub struct Lifting {
-    z: Kept,
+    z: LiftingForm,
     bodies: Vec<BodyFactor>,
     vector: PetscVec,
     /// Rank of A and its order (columns that are not zero), over this rank's bodies.
@@ -48,7 +48,7 @@ pub struct Lifting {
 }
 
 /// The form in which Z_c is stored.
-enum Kept {
+enum LiftingForm {
     /// As matrices, where there are few columns.
     Stored(Box<Stored>),
     /// As the factors of its product.
@@ -65,7 +65,7 @@ impl Lifting {
     /// Builds Z_c; `None` if no body has a column. Collective.
     pub fn new(
         problem: &Problem,
-        sharing: &Sharing,
+        sharing: &DofSharing,
         stiffness: &Stiffness,
         which: CoarseFunctions,
     ) -> Result<Option<Lifting>> {
@@ -85,11 +85,11 @@ impl Lifting {
         }
         sum_all(comm, &mut entries);
         let keep = entries[0] <= entries[1];
-        let Sums {
+        let LiftingSums {
             sums,
             products,
             kept,
-        } = Sums::new(problem, stiffness, &functions, &recipes, keep);
+        } = LiftingSums::new(problem, stiffness, &functions, &recipes, keep);
         let mut outgoing = vec![Blocks::default(); comm.size() as usize];
         for sum in &sums {
             sum.give(&mut outgoing[space.owner(sum.subdomain())]);
@@ -109,11 +109,11 @@ impl Lifting {
         let vector = PetscVec::mpi(session, space.n_owned)?;
         let z = if keep {
             let columns: Vec<&[u32]> = recipes.iter().map(|r| &r.columns[..]).collect();
-            Kept::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
+            LiftingForm::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
         } else {
             let averaging = Averaging::new(problem, sharing, stiffness)?;
             let applied = Applied::new(session, &vector, space, functions, averaging)?;
-            Kept::Applied(Box::new(applied))
+            LiftingForm::Applied(Box::new(applied))
         };
         Ok(Some(Lifting {
             z,
@@ -127,17 +127,17 @@ impl Lifting {
     /// Z_c x on the interface of every local subdomain, x given by global column number. Collective.
     pub fn combine(&self, stiffness: &Stiffness, x: impl Fn(u32) -> f64) -> Result<Vec<Vec<f64>>> {
         match &self.z {
-            Kept::Stored(stored) => Ok(stored.combine(x)),
-            Kept::Applied(applied) => applied.combine(stiffness, x),
+            LiftingForm::Stored(stored) => Ok(stored.combine(x)),
+            LiftingForm::Applied(applied) => applied.combine(stiffness, x),
         }
     }
 
     /// The first half of work.y ← S̃ (I − Z_c A⁺ Z_cᵀ S̃) work.v: sends the data that does not depend on S work.v.
     /// Collective.
-    pub fn begin(&self, stiffness: &Stiffness, work: &[Work]) -> Result<()> {
+    pub fn begin(&self, stiffness: &Stiffness, work: &[InterfaceBuffers]) -> Result<()> {
         match &self.z {
-            Kept::Stored(stored) => stored.begin(stiffness, work, &self.vector),
-            Kept::Applied(_) => Ok(()),
+            LiftingForm::Stored(stored) => stored.begin(stiffness, work, &self.vector),
+            LiftingForm::Applied(_) => Ok(()),
         }
     }
 
@@ -145,13 +145,13 @@ impl Lifting {
     pub fn finish(
         &self,
         stiffness: &Stiffness,
-        work: &mut [Work],
-        multiply: impl Fn(&mut [Work]),
+        work: &mut [InterfaceBuffers],
+        multiply: impl Fn(&mut [InterfaceBuffers]),
     ) -> Result<()> {
         let solve = |x: &mut [f64]| self.solve(x);
         match &self.z {
-            Kept::Stored(stored) => stored.finish(stiffness, work, &self.vector, solve),
-            Kept::Applied(applied) => {
+            LiftingForm::Stored(stored) => stored.finish(stiffness, work, &self.vector, solve),
+            LiftingForm::Applied(applied) => {
                 let mut lifted: Vec<Vec<f64>> = work.iter().map(|w| w.y.clone()).collect();
                 applied.project(stiffness, &mut lifted, &self.vector, solve)?;
                 for (w, lifted) in work.iter_mut().zip(&lifted) {
@@ -168,13 +168,15 @@ impl Lifting {
     pub fn finish_many(
         &self,
         stiffness: &Stiffness,
-        blocks: &mut [Columns],
-        multiply: impl Fn(&mut [Columns]),
+        blocks: &mut [InterfaceColumns],
+        multiply: impl Fn(&mut [InterfaceColumns]),
     ) -> Result<()> {
         let solve = |x: &mut [f64]| self.solve(x);
         match &self.z {
-            Kept::Stored(stored) => stored.remove_many(stiffness, blocks, &self.vector, solve),
-            Kept::Applied(applied) => {
+            LiftingForm::Stored(stored) => {
+                stored.remove_many(stiffness, blocks, &self.vector, solve)
+            }
+            LiftingForm::Applied(applied) => {
                 for c in 0..blocks.first().map_or(0, |b| b.v.cols) {
                     let columns = blocks.iter().map(|b| b.y.col(c).to_vec());
                     let mut lifted: Vec<Vec<f64>> = columns.collect();

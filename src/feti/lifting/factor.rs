@@ -22,11 +22,11 @@ const FILLED: f64 = 0.25;
 pub(crate) struct BodyFactor {
     /// Its columns among this rank's primal dofs.
     at: Vec<usize>,
-    factor: Factor,
+    factor: LiftingFactor,
 }
 
 /// The form of A⁺.
-enum Factor {
+enum LiftingFactor {
     /// A sparse factor: columns far from each other do not interact.
     Sparse(PartialCholesky),
     /// A dense factor that determines the rank.
@@ -34,7 +34,7 @@ enum Factor {
 }
 
 /// The contribution of a subdomain to A: columns, and the lower triangle of its block, column after column.
-pub(crate) type Share<'a> = (&'a [u32], &'a [f64]);
+pub(crate) type LiftingBlock<'a> = (&'a [u32], &'a [f64]);
 
 /// The shares of each owned body, in the order of the ranks: `owned` has its primal dofs, those of this rank begin at
 /// `first`. `received` has the sums that ranks sent.
@@ -42,7 +42,7 @@ pub(crate) fn shares<'a>(
     received: &'a [Blocks],
     owned: &[Range<usize>],
     first: usize,
-) -> Vec<Vec<Share<'a>>> {
+) -> Vec<Vec<LiftingBlock<'a>>> {
     let mut out = vec![Vec::new(); owned.len()];
     for (columns, values) in received.iter().flat_map(Blocks::iter) {
         // All columns are of one body.
@@ -55,7 +55,7 @@ pub(crate) fn shares<'a>(
 
 impl BodyFactor {
     /// A of a body from its shares; the primal dofs of this rank begin at `first`.
-    pub fn new(shares: &[Share<'_>], first: usize) -> BodyFactor {
+    pub fn new(shares: &[LiftingBlock<'_>], first: usize) -> BodyFactor {
         let columns = shares.iter().flat_map(|s| s.0.iter().copied());
         let columns = distinct(columns);
         let place = |g: &u32| columns.binary_search(g).expect("it was collected") as u32;
@@ -64,8 +64,8 @@ impl BodyFactor {
         let blocks: Vec<&[f64]> = shares.iter().map(|s| s.1).collect();
         let n = columns.len();
         let factor = sparse(n, &lists, &blocks).map_or_else(
-            || Factor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
-            Factor::Sparse,
+            || LiftingFactor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
+            LiftingFactor::Sparse,
         );
         BodyFactor {
             at: columns.iter().map(|&c| c as usize - first).collect(),
@@ -76,8 +76,8 @@ impl BodyFactor {
     /// Rank of A, and its order without zero columns.
     pub fn rank_and_order(&self) -> (usize, usize) {
         match &self.factor {
-            Factor::Sparse(factor) => (factor.n(), factor.n()),
-            Factor::Dense(factor) => (factor.rank(), factor.nonzero()),
+            LiftingFactor::Sparse(factor) => (factor.n(), factor.n()),
+            LiftingFactor::Dense(factor) => (factor.rank(), factor.nonzero()),
         }
     }
 
@@ -85,8 +85,8 @@ impl BodyFactor {
     pub fn solve(&self, x: &mut [f64]) {
         let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
         match &self.factor {
-            Factor::Sparse(factor) => factor.solve(&mut part),
-            Factor::Dense(factor) => factor.solve(&mut part),
+            LiftingFactor::Sparse(factor) => factor.solve(&mut part),
+            LiftingFactor::Dense(factor) => factor.solve(&mut part),
         }
         self.at.iter().zip(&part).for_each(|(&i, v)| x[i] = *v);
     }

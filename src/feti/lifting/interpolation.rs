@@ -7,10 +7,10 @@
 //! motions); for a straight edge it is half the sum of both ends. Functions of vertices are then continuous, as smooth
 //! as linear ones, and a third in number. The span of Z_c shrinks: M_C comes nearer to M_D and stays above it.
 
-use crate::feti::interface::sharing::{Copy, Sharing};
+use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::CoarseFunctions;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Subdomain;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
@@ -39,9 +39,9 @@ impl Functions {
     pub fn new(
         which: CoarseFunctions,
         sub: &Subdomain,
-        sharing: &Sharing,
+        sharing: &DofSharing,
         jump: &Jump,
-        local: &Scaled,
+        local: &ScaledSubdomain,
         j: usize,
     ) -> Functions {
         let n_shared = jump.n_shared[j];

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use super::block as lifting_block;
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
-use super::stored::Pair;
+use super::stored::LiftingColumns;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::primal::matrix::Blocks;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::substructures::Problem;
 use base::linalg::dense::{multiply, Dense};
@@ -23,7 +23,7 @@ const GROUP: usize = 32;
 const BLOCKS: usize = 32;
 
 /// The sum of Z_cᵀ S Z_c over some subdomains of a body.
-pub(crate) struct Sum {
+pub(crate) struct LiftingSum {
     /// The subdomains, by local number.
     members: Vec<usize>,
     /// Global columns, increasing.
@@ -33,17 +33,17 @@ pub(crate) struct Sum {
 }
 
 /// This rank's contributions to A.
-pub(crate) struct Sums {
+pub(crate) struct LiftingSums {
     /// The sums of groups of subdomains of a body.
-    pub sums: Vec<Sum>,
+    pub sums: Vec<LiftingSum>,
     /// Σ n_Γ² · columns over the blocks that were made.
     pub products: f64,
     /// Z_c and S Z_c of every local subdomain, if they are to be stored. Subdomains in the same surroundings share
     /// them.
-    pub kept: Vec<Arc<Pair>>,
+    pub kept: Vec<Arc<LiftingColumns>>,
 }
 
-impl Sums {
+impl LiftingSums {
     /// Computes and adds up the blocks of all local subdomains.
     pub fn new(
         problem: &Problem,
@@ -51,7 +51,7 @@ impl Sums {
         functions: &[Functions],
         recipes: &[Recipe],
         keep: bool,
-    ) -> Sums {
+    ) -> LiftingSums {
         let (locals, team) = (&stiffness.locals, &stiffness.team);
         let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
         for (j, sub) in problem.local.iter().enumerate() {
@@ -61,15 +61,15 @@ impl Sums {
                 None => groups.push((sub.body, vec![j])),
             }
         }
-        let each = team.map(groups.len(), |g| Sum::over(&groups[g].1, recipes));
-        let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
+        let each = team.map(groups.len(), |g| LiftingSum::over(&groups[g].1, recipes));
+        let mut sums: Vec<LiftingSum> = each.into_iter().flatten().collect();
         let first = representatives(locals, functions, recipes);
         let kinds = distinct(first.clone());
         let products = |&j: &usize| {
             recipes[j].columns.len() as f64 * (locals[j].gamma().n_gamma() as f64).powi(2)
         };
         let total = kinds.iter().map(products).sum();
-        let mut pairs: Vec<Arc<Pair>> = Vec::new();
+        let mut pairs: Vec<Arc<LiftingColumns>> = Vec::new();
         for some in kinds.chunks(BLOCKS) {
             let blocks = team.map(some.len(), |k| {
                 let j = some[k];
@@ -92,7 +92,7 @@ impl Sums {
             pairs.extend(blocks.into_iter().filter_map(|b| b.1));
         }
         let of = |j: &usize| pairs[kinds.binary_search(j).expect("a first one is a kind")].clone();
-        Sums {
+        LiftingSums {
             sums,
             products: total,
             kept: if keep {
@@ -105,7 +105,11 @@ impl Sums {
 }
 
 /// For each local subdomain, the first one with the same Z_cᵀ S Z_c.
-fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
+fn representatives(
+    locals: &[ScaledSubdomain],
+    functions: &[Functions],
+    recipes: &[Recipe],
+) -> Vec<usize> {
     let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
     let mut name = |j: usize| {
         let mut key = vec![locals[j].name()];
@@ -126,12 +130,12 @@ fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe
 }
 
 /// Z_cᵀ S Z_c of one subdomain, and its factors Z_c and S Z_c.
-fn block(local: &Scaled, z: Dense) -> (Dense, Pair) {
+fn block(local: &ScaledSubdomain, z: Dense) -> (Dense, LiftingColumns) {
     let mut y = Dense::zeros(z.rows, z.cols);
     local.apply(Operator::S, &z, &mut y);
     let mut a = Dense::zeros(z.cols, z.cols);
     multiply(a.view_mut(), false, 1.0, z.view().transpose(), y.view());
-    (a, Pair { z, y })
+    (a, LiftingColumns { z, y })
 }
 
 /// Adds the lower triangle of `block`, whose columns are `theirs`, to that of `a`. Both lists of columns are in the
@@ -147,11 +151,11 @@ fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
     }
 }
 
-impl Sum {
+impl LiftingSum {
     /// Zero sums for `members`: one for all of them, or one for each if the columns of some do not meet those of
     /// others. In the latter case less data is sent.
-    fn over(members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
-        let empty = |members: &[usize], columns: Vec<u32>| Sum {
+    fn over(members: &[usize], recipes: &[Recipe]) -> Vec<LiftingSum> {
+        let empty = |members: &[usize], columns: Vec<u32>| LiftingSum {
             members: members.to_vec(),
             a: Dense::zeros(columns.len(), columns.len()),
             columns,

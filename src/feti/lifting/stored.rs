@@ -5,14 +5,14 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::operators::work::{Columns, Work};
+use crate::feti::operators::work::{InterfaceBuffers, InterfaceColumns};
 use crate::Result;
 use base::linalg::dense::Dense;
 use parallel::halo::{numbered, Halo};
 use petsc::{Session, Vec as PetscVec};
 
 /// Z_c and Y = S Z_c on one subdomain, n_Γ × its columns.
-pub(crate) struct Pair {
+pub(crate) struct LiftingColumns {
     pub z: Dense,
     pub y: Dense,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Pair {
 /// Z_c and Y on every local subdomain, with the numbers of their columns.
 pub(crate) struct Stored {
     /// Z_c and Y of each local subdomain; those in the same surroundings share one pair.
-    pairs: Vec<Arc<Pair>>,
+    pairs: Vec<Arc<LiftingColumns>>,
     /// For each local subdomain, the ghost column behind each of its columns.
     columns: Vec<Vec<u32>>,
     /// Global number of each ghost column.
@@ -35,7 +35,7 @@ impl Stored {
     pub fn new(
         session: &Session,
         layout: &PetscVec,
-        pairs: Vec<Arc<Pair>>,
+        pairs: Vec<Arc<LiftingColumns>>,
         columns: &[&[u32]],
     ) -> Result<Stored> {
         let (ghosts, columns) = numbered(columns);
@@ -50,7 +50,7 @@ impl Stored {
 
     /// Z_c x on the interface of every local subdomain; x is given by global column number.
     pub fn combine(&self, x: impl Fn(u32) -> f64) -> Vec<Vec<f64>> {
-        let of = |(pair, columns): (&Arc<Pair>, &Vec<u32>)| {
+        let of = |(pair, columns): (&Arc<LiftingColumns>, &Vec<u32>)| {
             let c: Vec<f64> = columns
                 .iter()
                 .map(|&g| x(self.ghosts[g as usize]))
@@ -63,7 +63,12 @@ impl Stored {
     }
 
     /// Starts sending Yᵀ work.v. Collective.
-    pub fn begin(&self, stiffness: &Stiffness, work: &[Work], vector: &PetscVec) -> Result<()> {
+    pub fn begin(
+        &self,
+        stiffness: &Stiffness,
+        work: &[InterfaceBuffers],
+        vector: &PetscVec,
+    ) -> Result<()> {
         let mut ghost = self.ghost.borrow_mut();
         ghost.fill(0.0);
         let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
@@ -83,7 +88,7 @@ impl Stored {
     pub fn finish(
         &self,
         stiffness: &Stiffness,
-        work: &mut [Work],
+        work: &mut [InterfaceBuffers],
         vector: &PetscVec,
         solve: impl Fn(&mut [f64]),
     ) -> Result<()> {
@@ -104,7 +109,7 @@ impl Stored {
     pub fn remove_many(
         &self,
         stiffness: &Stiffness,
-        blocks: &mut [Columns],
+        blocks: &mut [InterfaceColumns],
         vector: &PetscVec,
         solve: impl Fn(&mut [f64]),
     ) -> Result<()> {

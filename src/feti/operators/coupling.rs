@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use super::stiffness::Stiffness;
-use crate::feti::jump::blocks::Form;
+use crate::feti::jump::blocks::BlockForm;
 use crate::feti::jump::columns::ScaledGhosts;
 use crate::feti::jump::coupled::Coupled;
 use crate::feti::jump::operator::Jump;
@@ -42,7 +42,7 @@ impl Coupling {
     ) -> Result<()> {
         let mut dofs = self.dofs.array_mut()?;
         for block in &jump.blocks {
-            if let Form::Coupled(coupled) = &block.form {
+            if let BlockForm::Coupled(coupled) = &block.form {
                 let (dofs, rows) = (
                     &mut dofs[block.slots.clone()],
                     &mut rows[block.rows.clone()],

@@ -1,14 +1,14 @@
 //! The jumps of displacements that the subdomains have, and how far rows give way.
 
 use super::stiffness::Stiffness;
-use super::work::Work;
+use super::work::InterfaceBuffers;
 use crate::substructures::Problem;
 use crate::Result;
 use petsc::Vec as PetscVec;
 
 impl Stiffness {
     /// out ← B y, with the displacements y in `work`. Collective.
-    pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+    pub fn jump_of(&self, work: &[InterfaceBuffers], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
         for (w, columns) in work.iter().zip(self.jump.columns.iter()) {
             columns.add_b(&w.y, &mut sum);
@@ -17,7 +17,7 @@ impl Stiffness {
     }
 
     /// out ← B y with all rows of B_gl, including those that do not hold. Collective.
-    pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+    pub fn jump_of_all(&self, work: &[InterfaceBuffers], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
         for (w, columns) in work.iter().zip(self.jump.columns.iter()) {
             columns.add_b(&w.y, &mut sum);

@@ -12,14 +12,14 @@ use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::products::Products;
+use super::products::BatchedProducts;
 use super::stiffness::Stiffness;
-use super::work::{Columns, Work};
+use super::work::{InterfaceBuffers, InterfaceColumns};
 use crate::feti::jump::columns::ScaledGhosts;
 use crate::feti::lifting::correction::Lifting;
 use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::substructures::Problem;
 use crate::Result;
@@ -41,8 +41,8 @@ pub struct Preconditioner {
     /// subdomains share it.
     single: Vec<Option<Arc<Single>>>,
     /// Products with S for subdomains that share it.
-    products: Products,
-    buffers: RefCell<(Vec<Work>, ScaledGhosts)>,
+    products: BatchedProducts,
+    buffers: RefCell<(Vec<InterfaceBuffers>, ScaledGhosts)>,
 }
 
 impl Preconditioner {
@@ -77,7 +77,7 @@ impl Preconditioner {
             lifting,
             k_gamma,
             single,
-            products: Products::new(&stiffness.locals, |most| stiffness.batches(most)),
+            products: BatchedProducts::new(&stiffness.locals, |most| stiffness.batches(most)),
             buffers: RefCell::new((stiffness.work(), stiffness.scaled_ghosts())),
         }
     }
@@ -125,7 +125,7 @@ impl Preconditioner {
 
 impl Preconditioner {
     /// work.y ← S work.v.
-    fn multiply(&self, stiffness: &Stiffness, work: &mut [Work]) {
+    fn multiply(&self, stiffness: &Stiffness, work: &mut [InterfaceBuffers]) {
         let (team, locals, products) = (&stiffness.team, &stiffness.locals, &self.products);
         let single = &self.single;
         let rounded = |j: usize| single.get(j).and_then(|s| s.as_ref());
@@ -158,11 +158,11 @@ impl Preconditioner {
         }
         let (_, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
-        let room = |local: &Scaled| Columns {
+        let room = |local: &ScaledSubdomain| InterfaceColumns {
             v: Dense::zeros(local.gamma().n_gamma(), lambdas.len()),
             y: Dense::zeros(local.gamma().n_gamma(), lambdas.len()),
         };
-        let mut blocks: Vec<Columns> = locals.iter().map(room).collect();
+        let mut blocks: Vec<InterfaceColumns> = locals.iter().map(room).collect();
         for (c, lambda) in lambdas.iter().enumerate() {
             stiffness.fetch_scaled(lambda, ghost)?;
             let received = &*ghost;
@@ -170,7 +170,7 @@ impl Preconditioner {
                 columns.of(j).bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
             });
         }
-        let multiply = |blocks: &mut [Columns]| {
+        let multiply = |blocks: &mut [InterfaceColumns]| {
             stiffness.team.for_each(blocks, |j, b| {
                 locals[j].apply(Operator::S, &b.v, &mut b.y); /*  y ← S v          */
             });
@@ -201,13 +201,13 @@ const ALIKE: f64 = 1e3;
 
 /// S of every local subdomain in single precision, where that is safe. Collective.
 fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
-    let each = stiffness.locals.iter().map(Scaled::stiffness);
+    let each = stiffness.locals.iter().map(ScaledSubdomain::stiffness);
     let (low, high) = each.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
     if highest(comm, high) > ALIKE * lowest(comm, low) {
         return vec![None; stiffness.locals.len()];
     }
     let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
-    let of = |local: &Scaled| {
+    let of = |local: &ScaledSubdomain| {
         if local.is_implicit() || local.kind().condition() > ROUNDABLE {
             return None;
         }

@@ -7,8 +7,8 @@
 
 use std::cell::{Ref, RefCell};
 
-use super::work::Work;
-use crate::feti::subdomain::scaled::Scaled;
+use super::work::InterfaceBuffers;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use base::linalg::dense::Dense;
 use parallel::team::Team;
@@ -21,26 +21,29 @@ const WIDTH: usize = 32;
 const WORTH_PACKING: usize = 48;
 
 /// The batches of subdomains that share operators, and buffers for their vectors.
-pub struct Products {
+pub struct BatchedProducts {
     batches: Vec<Vec<usize>>,
     /// (batch, column) of each local subdomain that belongs to a batch.
     place: Vec<Option<(usize, usize)>>,
-    panels: RefCell<Vec<Panel>>,
+    panels: RefCell<Vec<BatchPanel>>,
 }
 
 /// Vectors of one batch.
 #[derive(Default)]
-pub struct Panel {
+pub struct BatchPanel {
     v: Dense,
     y: Dense,
     /// Columns that are in use; the others stay zero.
     live: Vec<bool>,
 }
 
-impl Products {
+impl BatchedProducts {
     /// `batches(n)` returns the local subdomains in groups of at most n that share their operators.
-    pub fn new(locals: &[Scaled], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
-        let worth = |l: &Scaled| l.is_implicit() || l.gamma().n_delta >= WORTH_PACKING;
+    pub fn new(
+        locals: &[ScaledSubdomain],
+        batches: impl Fn(usize) -> Vec<Vec<usize>>,
+    ) -> BatchedProducts {
+        let worth = |l: &ScaledSubdomain| l.is_implicit() || l.gamma().n_delta >= WORTH_PACKING;
         let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
         let batches: Vec<Vec<usize>> = batches(WIDTH).into_iter().filter(together).collect();
         let mut place = vec![None; locals.len()];
@@ -49,8 +52,8 @@ impl Products {
                 place[j] = Some((b, c));
             }
         }
-        let panels = batches.iter().map(|_| Panel::default()).collect();
-        Products {
+        let panels = batches.iter().map(|_| BatchPanel::default()).collect();
+        BatchedProducts {
             batches,
             place,
             panels: RefCell::new(panels),
@@ -63,11 +66,11 @@ impl Products {
     pub fn multiply(
         &self,
         team: &Team,
-        locals: &[Scaled],
-        work: &[Work],
+        locals: &[ScaledSubdomain],
+        work: &[InterfaceBuffers],
         which: Operator,
         apply: impl Fn(usize, &Dense, &mut Dense, usize) + Sync + Send,
-    ) -> Ref<'_, Vec<Panel>> {
+    ) -> Ref<'_, Vec<BatchPanel>> {
         let batches = &self.batches;
         team.for_each(&mut self.panels.borrow_mut(), |b, panel| {
             let members = &batches[b];
@@ -90,8 +93,8 @@ impl Products {
     }
 
     /// The products of the last [`multiply`](Self::multiply), by local subdomain.
-    pub fn results<'a>(&'a self, panels: &'a [Panel], which: Operator) -> Results<'a> {
-        Results {
+    pub fn results<'a>(&'a self, panels: &'a [BatchPanel], which: Operator) -> BatchedResults<'a> {
+        BatchedResults {
             place: &self.place,
             panels,
             which,
@@ -100,16 +103,22 @@ impl Products {
 }
 
 /// Products by local subdomain.
-pub struct Results<'a> {
+pub struct BatchedResults<'a> {
     place: &'a [Option<(usize, usize)>],
-    panels: &'a [Panel],
+    panels: &'a [BatchPanel],
     which: Operator,
 }
 
-impl Results<'_> {
+impl BatchedResults<'_> {
     /// y ← A v of local subdomain `j`. `alone` computes it if the subdomain is in no batch. Entries beyond the
     /// operator's order are set to zero.
-    pub fn take(&self, j: usize, local: &Scaled, y: &mut [f64], alone: impl Fn(&mut [f64])) {
+    pub fn take(
+        &self,
+        j: usize,
+        local: &ScaledSubdomain,
+        y: &mut [f64],
+        alone: impl Fn(&mut [f64]),
+    ) {
         match self.place[j] {
             None => alone(y),
             Some((b, c)) if self.panels[b].live[c] => {
@@ -128,7 +137,7 @@ impl Results<'_> {
     }
 }
 
-impl Panel {
+impl BatchPanel {
     fn shape(&mut self, rows: usize, cols: usize) {
         if (self.v.rows, self.v.cols) != (rows, cols) {
             self.v = Dense::zeros(rows, cols);

@@ -13,15 +13,15 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 
 use super::coupling::Coupling;
-use super::products::Products;
+use super::products::BatchedProducts;
 use super::springs::Springs;
-use super::work::Work;
+use super::work::InterfaceBuffers;
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::coarse::PrimalProblem;
-use crate::feti::primal::refinement::{self, Refinement};
+use crate::feti::primal::refinement::{self, PrimalRefinement};
 use crate::feti::primal::space::PrimalSpace;
 use crate::feti::subdomain::problem::LocalProblem;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::Result;
 use base::linalg::dense::Dense;
@@ -36,7 +36,7 @@ pub struct Stiffness {
     /// B and B_D.
     pub jump: Jump,
     /// The factored subdomains of this rank.
-    pub locals: Vec<Scaled>,
+    pub locals: Vec<ScaledSubdomain>,
     /// Numbering and kernels of the bodies.
     pub space: PrimalSpace,
     /// The bodies' primal problem S_Π with its solver.
@@ -48,9 +48,9 @@ pub struct Stiffness {
     /// The threads of this rank.
     pub team: Team,
     /// Products with T for subdomains that share it.
-    products: Products,
+    products: BatchedProducts,
     /// Corrections of S_Π⁺, where coefficients jump inside bodies.
-    refinement: Option<Refinement>,
+    refinement: Option<PrimalRefinement>,
     /// C; `None` stands for zero.
     springs: Option<Springs>,
     buffers: RefCell<Buffers>,
@@ -58,7 +58,7 @@ pub struct Stiffness {
 
 #[derive(Default)]
 struct Buffers {
-    work: Vec<Work>,
+    work: Vec<InterfaceBuffers>,
     ghost: Vec<f64>,
 }
 
@@ -67,17 +67,17 @@ impl Stiffness {
     pub fn new(
         session: &Session,
         jump: Jump,
-        locals: Vec<Scaled>,
+        locals: Vec<ScaledSubdomain>,
         space: PrimalSpace,
         primal: PrimalProblem,
         dual_halo: Halo,
         team: Team,
     ) -> Result<Stiffness> {
         let buffers = Buffers {
-            work: locals.iter().map(Work::for_subdomain).collect(),
+            work: locals.iter().map(InterfaceBuffers::for_subdomain).collect(),
             ghost: vec![0.0; jump.ghosts.len()],
         };
-        let products = Products::new(&locals, |most| batches(&locals, most));
+        let products = BatchedProducts::new(&locals, |most| batches(&locals, most));
         Ok(Stiffness {
             session: session.clone(),
             products,
@@ -100,7 +100,7 @@ impl Stiffness {
     }
 
     /// Makes `refinement` correct S_Π⁺ from now on.
-    pub fn refine(&mut self, refinement: Refinement) {
+    pub fn refine(&mut self, refinement: PrimalRefinement) {
         self.refinement = Some(refinement);
     }
 
@@ -152,14 +152,14 @@ impl Stiffness {
     }
 
     /// S_Π⁺ Ψᵀ work.v at this rank's ghosts. Collective.
-    fn coarse_values(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+    fn coarse_values(&self, work: &mut [InterfaceBuffers]) -> Result<Vec<f64>> {
         let mut sum = self.coarse_begin(work)?;
         self.primal_finish(&mut sum)?; /*                 c ← S_Π⁺ p     */
         Ok(sum)
     }
 
     /// Ψᵀ work.v at this rank's ghosts; starts sending it to the owners. Collective.
-    fn coarse_begin(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+    fn coarse_begin(&self, work: &mut [InterfaceBuffers]) -> Result<Vec<f64>> {
         let locals = &self.locals;
         self.team.for_each(work, |j, w| {
             locals[j].gamma().psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
@@ -182,7 +182,7 @@ impl Stiffness {
     }
 
     /// work.y ← S̃⁺ work.v on every subdomain. Collective.
-    pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
+    pub fn s_plus(&self, work: &mut [InterfaceBuffers]) -> Result<()> {
         let (locals, space) = (&self.locals, &self.space);
         let mut coarse = self.coarse_begin(work)?; /*     p ← Ψᵀ v       */
         let (team, products) = (&self.team, &self.products);
@@ -253,11 +253,11 @@ impl Stiffness {
         &self,
         lambdas: &[PetscVec],
         outs: &[PetscVec],
-        change: impl Fn(&mut [Work]),
+        change: impl Fn(&mut [InterfaceBuffers]),
     ) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&self.jump.columns, &self.locals);
-        let room = |local: &Scaled| {
+        let room = |local: &ScaledSubdomain| {
             let zeros = || Dense::zeros(local.gamma().n_delta, lambdas.len());
             (zeros(), zeros())
         };
@@ -340,11 +340,11 @@ impl Stiffness {
     pub fn by_batch<T: Send>(
         &self,
         batches: &[Vec<usize>],
-        work: impl Fn(&[&Scaled], &[usize]) -> Vec<T> + Sync + Send,
+        work: impl Fn(&[&ScaledSubdomain], &[usize]) -> Vec<T> + Sync + Send,
     ) -> Vec<T> {
         let locals = &self.locals;
         let of = |b: usize| {
-            let members: Vec<&Scaled> = batches[b].iter().map(|&j| &locals[j]).collect();
+            let members: Vec<&ScaledSubdomain> = batches[b].iter().map(|&j| &locals[j]).collect();
             work(&members, &batches[b])
         };
         let done = self.team.map(batches.len(), of).into_iter().flatten();
@@ -354,12 +354,15 @@ impl Stiffness {
     }
 
     /// Fresh buffers for all subdomains of this rank.
-    pub fn work(&self) -> Vec<Work> {
-        self.locals.iter().map(Work::for_subdomain).collect()
+    pub fn work(&self) -> Vec<InterfaceBuffers> {
+        self.locals
+            .iter()
+            .map(InterfaceBuffers::for_subdomain)
+            .collect()
     }
 }
 
-fn batches(locals: &[Scaled], most: usize) -> Vec<Vec<usize>> {
+fn batches(locals: &[ScaledSubdomain], most: usize) -> Vec<Vec<usize>> {
     let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
     for (j, local) in locals.iter().enumerate() {
         kinds.entry(Arc::as_ptr(local.kind())).or_default().push(j);

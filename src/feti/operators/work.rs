@@ -1,11 +1,11 @@
 //! Buffers for the vectors of one subdomain.
 
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use base::linalg::dense::Dense;
 
 /// Buffers of one subdomain on its interface Γ.
 #[derive(Debug, Clone, Default)]
-pub struct Work {
+pub struct InterfaceBuffers {
     /// Input: a load, length n_Γ.
     pub v: Vec<f64>,
     /// Output: a displacement, length n_Γ.
@@ -16,17 +16,17 @@ pub struct Work {
 
 /// Several columns of one subdomain on its interface Γ.
 #[derive(Debug, Clone, Default)]
-pub struct Columns {
+pub struct InterfaceColumns {
     /// Inputs, n_Γ × their number.
     pub v: Dense,
     /// Outputs, same shape.
     pub y: Dense,
 }
 
-impl Work {
+impl InterfaceBuffers {
     /// Zeros in the sizes of this subdomain.
-    pub fn for_subdomain(local: &Scaled) -> Work {
-        Work {
+    pub fn for_subdomain(local: &ScaledSubdomain) -> InterfaceBuffers {
+        InterfaceBuffers {
             v: vec![0.0; local.gamma().n_gamma()],
             y: vec![0.0; local.gamma().n_gamma()],
             p: vec![0.0; local.gamma().n_pi()],

@@ -3,7 +3,7 @@
 //! S_Π is block diagonal by body, and the rows of a body live on one rank. The crate's own Cholesky factorisation of
 //! each body solves S_Π exactly and without a message. Any option `-fetifeti_coarse_…` selects a PETSc KSP instead.
 
-use super::body::{Body, Pattern};
+use super::body::{AnalysedPattern, PrimalFactor};
 use super::matrix::PrimalMatrix;
 use super::space::PrimalSpace;
 use crate::{Error, Result};
@@ -15,20 +15,20 @@ use petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
 
 /// S_Π, regularised, with its solver; empty if no body has primal dofs.
 pub struct PrimalProblem {
-    parts: Option<Parts>,
+    parts: Option<AssembledPrimal>,
 }
 
-struct Parts {
+struct AssembledPrimal {
     session: Session,
-    solver: Solver,
+    solver: PrimalSolver,
     rhs: PetscVec,
     solution: PetscVec,
     halo: Halo,
 }
 
-enum Solver {
+enum PrimalSolver {
     /// A factor for each body of this rank.
-    Own(Vec<Body>),
+    Own(Vec<PrimalFactor>),
     Petsc(Ksp),
 }
 
@@ -40,7 +40,7 @@ impl PrimalProblem {
         space: &mut PrimalSpace,
         team: &Team,
         prefix: &str,
-        (known, keeps): (&[Pattern], bool),
+        (known, keeps): (&[AnalysedPattern], bool),
     ) -> Result<PrimalProblem> {
         if space.n_global == 0 {
             return Ok(PrimalProblem { parts: None });
@@ -53,14 +53,14 @@ impl PrimalProblem {
             own(session, space, team, &matrix, (known, keeps))
         };
         let solver = match own {
-            Some(bodies) => Solver::Own(bodies),
+            Some(bodies) => PrimalSolver::Own(bodies),
             // A factorisation may fail on one rank alone.
-            None => Solver::Petsc(session.agree(petsc(session, space, &matrix, prefix))?),
+            None => PrimalSolver::Petsc(session.agree(petsc(session, space, &matrix, prefix))?),
         };
         let solution = rhs.duplicate()?;
         let halo = Halo::new(session, &rhs, &space.ghosts)?;
         Ok(PrimalProblem {
-            parts: Some(Parts {
+            parts: Some(AssembledPrimal {
                 session: session.clone(),
                 solver,
                 rhs,
@@ -71,10 +71,10 @@ impl PrimalProblem {
     }
 
     /// The patterns of this rank's bodies, if they are kept; or none.
-    pub fn patterns(&self) -> Vec<Pattern> {
-        let of = |solver: &Solver| match solver {
-            Solver::Own(bodies) => bodies.iter().map(|b| b.pattern.clone()).collect(),
-            Solver::Petsc(_) => None,
+    pub fn patterns(&self) -> Vec<AnalysedPattern> {
+        let of = |solver: &PrimalSolver| match solver {
+            PrimalSolver::Own(bodies) => bodies.iter().map(|b| b.pattern.clone()).collect(),
+            PrimalSolver::Petsc(_) => None,
         };
         let found = self.parts.as_ref().and_then(|p| of(&p.solver));
         found.unwrap_or_default()
@@ -100,14 +100,14 @@ impl PrimalProblem {
         let Some(p) = &self.parts else { return Ok(()) };
         p.halo.sum_end(&p.rhs)?;
         match &p.solver {
-            Solver::Petsc(ksp) => {
+            PrimalSolver::Petsc(ksp) => {
                 let solved = clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution));
                 // Every rank has blocks of its own, and a reason of its own: that of a block which cannot be factored
                 // does not reach the others, which would wait for ever in the next exchange.
                 p.session
                     .agree(solved.and_then(|()| solved_to_the_end(ksp)))?;
             }
-            Solver::Own(bodies) => {
+            PrimalSolver::Own(bodies) => {
                 p.solution.copy_from(&p.rhs)?;
                 let mut solution = p.solution.array_mut()?;
                 // The part of each body.
@@ -145,11 +145,11 @@ fn own(
     space: &PrimalSpace,
     team: &Team,
     matrix: &PrimalMatrix,
-    (known, keeps): (&[Pattern], bool),
-) -> Option<Vec<Body>> {
+    (known, keeps): (&[AnalysedPattern], bool),
+) -> Option<Vec<PrimalFactor>> {
     let bodies = team.map(space.owned.len(), |b| {
         let range = &space.owned[b].range;
-        Body::new(range.start, &matrix.sparse(range), known.get(b), keeps)
+        PrimalFactor::new(range.start, &matrix.sparse(range), known.get(b), keeps)
     });
     let bodies: Option<Vec<_>> = bodies.into_iter().collect();
     // All ranks make the same choice.

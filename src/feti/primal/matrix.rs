@@ -81,7 +81,7 @@ pub struct PrimalMatrix {
 }
 
 /// A subdomain's part: owned dofs, and entries row by row.
-type Block<'a> = (Vec<u32>, &'a [f64]);
+type SubdomainBlock<'a> = (Vec<u32>, &'a [f64]);
 
 impl PrimalMatrix {
     /// Sends the blocks; `n` dofs from global number `first` on are owned here. Collective.
@@ -119,7 +119,7 @@ impl PrimalMatrix {
     }
 
     /// Blocks of the body (or bodies) with these owned dofs. Dofs are counted from the first one of the body.
-    fn of_body<'a>(&'a self, body: &Range<usize>) -> impl Iterator<Item = Block<'a>> {
+    fn of_body<'a>(&'a self, body: &Range<usize>) -> impl Iterator<Item = SubdomainBlock<'a>> {
         let place = |dof: usize| self.index.partition_point(|b| (b.0 as usize) < dof);
         let offset = (self.first + body.start) as u32;
         let blocks = self.index[place(body.start)..place(body.end)].iter();

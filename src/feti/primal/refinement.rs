@@ -10,7 +10,7 @@
 //! ```
 
 use super::space::PrimalSpace;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use base::linalg::dense::Dense;
 
@@ -25,21 +25,27 @@ const FREE: f64 = 1e-9;
 
 /// N_j of each local subdomain: its rigid motions as orthonormal columns, n_Π rows; no columns if the subdomain is
 /// held.
-pub struct Refinement {
+pub struct PrimalRefinement {
     motions: Vec<Dense>,
 }
 
-impl Refinement {
+impl PrimalRefinement {
     /// The rigid motions at the primal dofs.
-    pub fn new(problem: &Problem, locals: &[Scaled]) -> Refinement {
+    pub fn new(problem: &Problem, locals: &[ScaledSubdomain]) -> PrimalRefinement {
         let pairs = problem.local.iter().zip(locals);
-        Refinement {
+        PrimalRefinement {
             motions: pairs.map(|(sub, l)| motions(sub, l)).collect(),
         }
     }
 
     /// r ← r − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c, all at this rank's ghosts.
-    pub fn subtract(&self, space: &PrimalSpace, locals: &[Scaled], c: &[f64], r: &mut [f64]) {
+    pub fn subtract(
+        &self,
+        space: &PrimalSpace,
+        locals: &[ScaledSubdomain],
+        c: &[f64],
+        r: &mut [f64],
+    ) {
         let mut force = Vec::new();
         for ((places, local), n) in space.of_subdomain.iter().zip(locals).zip(&self.motions) {
             let mut x: Vec<f64> = places.iter().map(|&g| c[g as usize]).collect();
@@ -67,7 +73,7 @@ fn remove(n: &Dense, x: &mut [f64]) {
     }
 }
 
-fn motions(sub: &Subdomain, local: &Scaled) -> Dense {
+fn motions(sub: &Subdomain, local: &ScaledSubdomain) -> Dense {
     let n_pi = local.gamma().n_pi();
     let mut out = Dense::zeros(n_pi, 0);
     for column in sub.near_kernel.iter().flatten() {

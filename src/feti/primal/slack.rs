@@ -2,7 +2,7 @@
 
 use super::space::PrimalSpace;
 use crate::feti::subdomain::factor::no_stiffness;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::{any, gather_all};
@@ -16,7 +16,7 @@ pub fn check(
     session: &Session,
     problem: &Problem,
     space: &PrimalSpace,
-    locals: &[Scaled],
+    locals: &[ScaledSubdomain],
 ) -> Result<()> {
     let comm = session.comm();
     let slack: Vec<usize> = space.matrix.slack().map(|i| space.first + i).collect();

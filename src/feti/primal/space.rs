@@ -12,8 +12,8 @@ use rustc_hash::FxHashMap;
 use super::kernel::{self, SentFactors};
 use super::matrix::{Blocks, PrimalMatrix};
 use crate::feti::interface::entities::Average;
-use crate::feti::interface::sharing::Sharing;
-use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::interface::sharing::DofSharing;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
@@ -76,9 +76,9 @@ impl PrimalSpace {
     pub fn new(
         comm: &SimpleCommunicator,
         problem: &Problem,
-        sharing: &Sharing,
+        sharing: &DofSharing,
         averages: &[Vec<Average>],
-        locals: &[Scaled],
+        locals: &[ScaledSubdomain],
     ) -> PrimalSpace {
         let mut space = PrimalSpace {
             owner: (problem.local.iter())
@@ -116,7 +116,7 @@ impl PrimalSpace {
         comm: &SimpleCommunicator,
         problem: &Problem,
         averages: &[Vec<Average>],
-        locals: &[Scaled],
+        locals: &[ScaledSubdomain],
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<PrimalName>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
@@ -180,7 +180,7 @@ impl PrimalSpace {
         &mut self,
         comm: &SimpleCommunicator,
         problem: &Problem,
-        locals: &[Scaled],
+        locals: &[ScaledSubdomain],
         asked: &[Vec<u32>],
     ) {
         // The factors of each subdomain by body, and N at the primal dofs by their numbers.
@@ -251,7 +251,11 @@ impl PrimalSpace {
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of each body.
-    fn local_stiffness(&self, problem: &Problem, locals: &[Scaled]) -> FxHashMap<usize, f64> {
+    fn local_stiffness(
+        &self,
+        problem: &Problem,
+        locals: &[ScaledSubdomain],
+    ) -> FxHashMap<usize, f64> {
         let mut out: FxHashMap<usize, f64> = FxHashMap::default();
         for (sub, local) in problem.local.iter().zip(locals) {
             let interface = local.gamma().interface.iter();
@@ -308,7 +312,7 @@ impl PrimalSpace {
     }
 
     /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
-    pub fn kernel_on_interface(&self, j: usize, local: &Scaled) -> Dense {
+    pub fn kernel_on_interface(&self, j: usize, local: &ScaledSubdomain) -> Dense {
         // A floating body has primal dofs in each of its subdomains.
         let first = self.of_subdomain[j].first();
         let defect = first.map_or(0, |&g| self.z_at_ghosts[g as usize].len());

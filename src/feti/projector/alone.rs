@@ -3,15 +3,15 @@
 
 use rustc_hash::FxHashMap;
 
-use super::known::Known;
-use super::motion::{Coefficient, Motion, NOTHING_SOLVED};
-use super::pattern::Pattern;
+use super::column_map::ColumnMap;
+use super::kernel_motion::{Coefficient, KernelMotion, NOTHING_SOLVED};
+use super::pattern::BlockPattern;
 use super::weak::weak_columns;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
-use cholesky::team::Team;
+use cholesky::team::FactorTeam;
 use parallel::exchange::exchange_by_rank;
 use parallel::parcels::Parcels;
 
@@ -19,11 +19,11 @@ use parallel::parcels::Parcels;
 /// column that is left out for it. `a` has a unit diagonal; `noise` is for the matrix without this scale.
 /// The rank that has the first column of a body looks at it. Collective.
 pub(super) fn alone(
-    (pattern, known): (&Pattern, &Known),
-    team: &Team,
+    (pattern, known): (&BlockPattern, &ColumnMap),
+    team: &FactorTeam,
     a: &Csr,
     (scale, noise): (&[f64], &[f64]),
-) -> Vec<(u32, Motion)> {
+) -> Vec<(u32, KernelMotion)> {
     let bodies = bodies_here(pattern, team);
     let elsewhere = rows_of_others((pattern, known), team, a, &bodies);
     let mut found = Parcels::default();
@@ -59,21 +59,22 @@ pub(super) fn alone(
             };
             let entries = (columns.clone()).zip(&v);
             let entries = entries.map(|(c, v)| (c as u32, v * scale[c] / unit));
-            let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
+            let KernelMotion(motion) = KernelMotion::above(NOTHING_SOLVED, entries);
             let entries = motion.iter();
             let entries = entries.map(|&(c, v)| Coefficient::new(known.name(c), v));
             found.push(known.name((first + k) as u32), entries);
         }
     }
     let all = found.gather_all(team.comm());
-    let motion = |entries: &[Coefficient]| Motion(entries.iter().map(Coefficient::pair).collect());
+    let motion =
+        |entries: &[Coefficient]| KernelMotion(entries.iter().map(Coefficient::pair).collect());
     let each = all.iter().flat_map(Parcels::iter);
     each.map(|(column, entries)| (column, motion(entries)))
         .collect()
 }
 
 /// The bodies with columns that this rank has, increasing.
-fn bodies_here(pattern: &Pattern, team: &Team) -> Vec<u32> {
+fn bodies_here(pattern: &BlockPattern, team: &FactorTeam) -> Vec<u32> {
     let bodies = team.own_dofs().map(|c| pattern.bodies()[c as usize]);
     distinct(bodies)
 }
@@ -81,8 +82,8 @@ fn bodies_here(pattern: &Pattern, team: &Team) -> Vec<u32> {
 /// Of bodies whose first column this rank has: the rows of their other columns that other ranks have, in the columns
 /// of the body. Collective.
 fn rows_of_others(
-    (pattern, known): (&Pattern, &Known),
-    team: &Team,
+    (pattern, known): (&BlockPattern, &ColumnMap),
+    team: &FactorTeam,
     a: &Csr,
     bodies: &[u32],
 ) -> FxHashMap<u32, Vec<f64>> {

@@ -2,9 +2,9 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::gtg::{Gtg, Side};
-use super::known::Known;
-use super::motion::Motion;
+use super::column_map::ColumnMap;
+use super::gtg::{Gtg, InverseSide};
+use super::kernel_motion::KernelMotion;
 use super::natural::NaturalCoarse;
 use crate::feti::settings::ProjectorKind;
 use crate::Result;
@@ -32,10 +32,15 @@ pub struct KernelLoad {
 
 impl KernelLoad {
     /// Its entries at the columns of motions. The same on every rank. Collective.
-    pub fn along(&self, comm: &SimpleCommunicator, known: &Known, motions: &[Motion]) -> Along {
+    pub fn along(
+        &self,
+        comm: &SimpleCommunicator,
+        known: &ColumnMap,
+        motions: &[KernelMotion],
+    ) -> LoadWork {
         let vectors = [&self.e[..], &self.size, &self.rounding];
         let (names, [e, size, rounding]) = known.at(comm, motions, vectors);
-        Along {
+        LoadWork {
             names,
             e,
             size,
@@ -46,7 +51,7 @@ impl KernelLoad {
 
 /// The work of the loads on some kernel vectors.
 #[derive(Debug, Clone, Default)]
-pub struct Along {
+pub struct LoadWork {
     /// The names of their columns, increasing.
     names: Vec<u32>,
     e: Vec<f64>,
@@ -54,10 +59,10 @@ pub struct Along {
     rounding: Vec<f64>,
 }
 
-impl Along {
+impl LoadWork {
     /// The work on a motion, if it is no rounding: more than this part of the terms that may cancel in it, and than
     /// what the digits of the input leave open.
-    pub fn driving(&self, motion: &Motion, part: f64) -> Option<f64> {
+    pub fn driving(&self, motion: &KernelMotion, part: f64) -> Option<f64> {
         let [work, size, rounding] = self.work(motion);
         (work.abs() > (part * size).max(rounding)).then_some(work)
     }
@@ -66,7 +71,7 @@ impl Along {
     ///
     /// # Panics
     /// If it has other columns.
-    pub fn work(&self, motion: &Motion) -> [f64; 3] {
+    pub fn work(&self, motion: &KernelMotion) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for (c, v) in &motion.0 {
             let at = self
@@ -160,7 +165,7 @@ impl NaturalCoarse {
             self.g.add_transpose(&lambda.array()?, &mut c);
             c.iter_mut().for_each(|c| *c = -*c);
             let least = choose.then(|| self.least(comm, solver, c.clone(), &load.e));
-            solver.solve_sum(comm, &mut c, Some(&load.e), Side::Plain)?;
+            solver.solve_sum(comm, &mut c, Some(&load.e), InverseSide::Plain)?;
             let mut lambda = lambda.array_mut()?;
             let mut forces = vec![0.0; lambda.len()];
             self.qg().add(1.0, &c, &mut forces);
@@ -203,7 +208,7 @@ impl NaturalCoarse {
         qg.add_transpose(&jump.array()?, &mut c);
         c.iter_mut().for_each(|v| *v = -*v);
         if let Some(gtg) = &self.gtg {
-            gtg.solve_sum(comm, &mut c, None, Side::Transposed)?;
+            gtg.solve_sum(comm, &mut c, None, InverseSide::Transposed)?;
         }
         Ok(c)
     }

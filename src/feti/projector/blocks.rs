@@ -10,14 +10,14 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
-use super::rows::Rows;
+use super::rows::KernelRows;
 use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
 use parallel::exchange::{highest, sum_all};
 use parallel::parcels::Parcels;
 
 /// Columns in blocks: those of a block follow each other, and belong to one body.
-pub struct Blocks {
+pub struct ColumnBlocks {
     /// First column of each block, and the end.
     start: Vec<usize>,
     /// The body of each block.
@@ -26,10 +26,10 @@ pub struct Blocks {
     pub near: Vec<Vec<u32>>,
 }
 
-impl Blocks {
+impl ColumnBlocks {
     /// Whole bodies: each has entries for those in its list. `start` has the first column of each body.
-    pub fn of_bodies(lists: &[Vec<u32>], start: &[usize]) -> Blocks {
-        Blocks {
+    pub fn of_bodies(lists: &[Vec<u32>], start: &[usize]) -> ColumnBlocks {
+        ColumnBlocks {
             start: start.to_vec(),
             body: (0..lists.len() as u32).collect(),
             near: lists.to_vec(),
@@ -37,7 +37,7 @@ impl Blocks {
     }
 
     /// The blocks of AᵀA for these rows. The same on every rank. Collective.
-    pub fn of_rows(comm: &SimpleCommunicator, rows: &Rows, start: &[usize]) -> Blocks {
+    pub fn of_rows(comm: &SimpleCommunicator, rows: &KernelRows, start: &[usize]) -> ColumnBlocks {
         let r = *start.last().expect("there is an end");
         let mut largest = Parcels::default();
         for set in largest_sets(rows, start) {
@@ -50,7 +50,7 @@ impl Blocks {
         for (k, set) in (0..).zip(&sets) {
             set.iter().for_each(|&c| sets_of[c as usize].push(k));
         }
-        let mut blocks = Blocks {
+        let mut blocks = ColumnBlocks {
             start: Vec::new(),
             body: Vec::new(),
             near: Vec::new(),
@@ -92,7 +92,7 @@ impl Blocks {
 }
 
 /// The sets of columns of rows, each increasing, without those that are a part of another one between the same bodies.
-fn largest_sets<'a>(rows: &'a Rows, start: &[usize]) -> Vec<&'a [u32]> {
+fn largest_sets<'a>(rows: &'a KernelRows, start: &[usize]) -> Vec<&'a [u32]> {
     let body = |c: &u32| start.partition_point(|&s| s <= *c as usize) as u32;
     let mut between: FxHashMap<Vec<u32>, Vec<&[u32]>> = FxHashMap::default();
     let mut bodies: Vec<u32> = Vec::new();

@@ -1,7 +1,7 @@
 //! Motions by the columns in which they have coefficients: what a row does to many of them.
 
-use super::known::Known;
-use super::motion::Motion;
+use super::column_map::ColumnMap;
+use super::kernel_motion::KernelMotion;
 
 /// Motions by the columns in which they have coefficients, as far as these are known here.
 pub struct ByColumn {
@@ -13,7 +13,7 @@ pub struct ByColumn {
 
 impl ByColumn {
     /// Sorts the coefficients of motions.
-    pub fn new<'a>(known: &Known, motions: impl Iterator<Item = &'a Motion>) -> ByColumn {
+    pub fn new<'a>(known: &ColumnMap, motions: impl Iterator<Item = &'a KernelMotion>) -> ByColumn {
         let mut all: Vec<(u32, u32, f64)> = Vec::new();
         for (m, motion) in (0..).zip(motions) {
             let here = motion.0.iter();

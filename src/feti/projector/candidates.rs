@@ -5,7 +5,7 @@ use mpi::traits::Communicator;
 
 use super::columns::KernelColumns;
 use super::natural::NaturalCoarse;
-use super::rows::{RowEntry, Rows};
+use super::rows::{KernelRows, RowEntry};
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
@@ -18,7 +18,7 @@ const STILL: f64 = 1e-12;
 
 impl NaturalCoarse {
     /// Assembles [`all`](Self::all), with the names of columns. Collective.
-    pub(super) fn all_rows(&self, problem: &Problem, stiffness: &Stiffness) -> Rows {
+    pub(super) fn all_rows(&self, problem: &Problem, stiffness: &Stiffness) -> KernelRows {
         let kernels = (&self.columns, &self.kernels[..]);
         rows_of_bodies(stiffness.comm(), problem, &stiffness.jump, kernels)
     }
@@ -31,7 +31,7 @@ pub(super) fn rows_of_bodies(
     problem: &Problem,
     jump: &Jump,
     (columns, kernels): (&KernelColumns, &[Dense]),
-) -> Rows {
+) -> KernelRows {
     let owners = Owners::new(comm, jump.first);
     let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
     let largest = largest(comm, problem, columns, kernels);
@@ -59,7 +59,7 @@ pub(super) fn rows_of_bodies(
     let entries = exchange(comm, outgoing);
     let first = jump.first as u32;
     let entries = entries.iter().map(|e| (e.row - first, e.col, e.value));
-    Rows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
+    KernelRows::without_rounding(jump.n_owned, &entries.collect::<Vec<_>>(), &largest, STILL)
 }
 
 /// The largest entry of each column of R. Collective.

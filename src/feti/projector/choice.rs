@@ -6,10 +6,10 @@ use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
 use super::gram::Gram;
-use super::motion::{Coefficient, Motion};
+use super::gram_pattern::GramPattern;
+use super::kernel_motion::{Coefficient, KernelMotion};
 use super::natural::NaturalCoarse;
-use super::raised::{Row, MOST};
-use super::shape::Shape;
+use super::woodbury::{SparseRow, MOST};
 use parallel::clock::{self, Phase};
 use parallel::exchange::{highest, sum_all};
 use parallel::parcels::Parcels;
@@ -58,7 +58,7 @@ impl NaturalCoarse {
     }
 
     /// GᵀG of these rows, factored anew; motions that no pivot shows are left out, too. Collective.
-    fn factored(&self, comm: &SimpleCommunicator, shape: &Shape, chosen: &[bool]) -> Gram {
+    fn factored(&self, comm: &SimpleCommunicator, shape: &GramPattern, chosen: &[bool]) -> Gram {
         let mut hidden: Vec<u32> = Vec::new();
         loop {
             let mut numbers = self.numbers.borrow_mut();
@@ -78,8 +78,8 @@ impl NaturalCoarse {
     }
 
     /// The largest work of these rows on one of these motions, relative to the largest that it could be. Collective.
-    fn work(&self, comm: &SimpleCommunicator, chosen: &[bool], motions: &[Motion]) -> f64 {
-        let largest: Vec<f64> = motions.iter().map(Motion::largest).collect();
+    fn work(&self, comm: &SimpleCommunicator, chosen: &[bool], motions: &[KernelMotion]) -> f64 {
+        let largest: Vec<f64> = motions.iter().map(KernelMotion::largest).collect();
         let by_column = ByColumn::new(self.known(), motions.iter());
         let mut most = 0.0f64;
         for i in (0..chosen.len()).filter(|&i| chosen[i]) {
@@ -93,7 +93,7 @@ impl NaturalCoarse {
     }
 
     /// The rows that are chosen now and were not, by the names of columns, on every rank. Collective.
-    fn more_rows(&self, comm: &SimpleCommunicator, was: &[bool], is: &[bool]) -> Vec<Row> {
+    fn more_rows(&self, comm: &SimpleCommunicator, was: &[bool], is: &[bool]) -> Vec<SparseRow> {
         let mut mine = Parcels::default();
         for i in (0..is.len()).filter(|&i| is[i] && !was[i]) {
             let (columns, values) = self.all.entries(i);

@@ -10,10 +10,10 @@ use std::ops::Range;
 
 use mpi::traits::Communicator;
 
-use super::gtg::{direct, Side};
-use super::pattern::Pattern;
+use super::gtg::{direct, InverseSide};
+use super::pattern::BlockPattern;
 use super::refined::probe;
-use super::rows::Rows;
+use super::rows::KernelRows;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
 use base::linalg::sorted::distinct;
@@ -31,7 +31,7 @@ const ITERATIONS: i32 = 1000;
 
 /// How GᵀQG is solved, and how often it was.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Work {
+pub struct CoarseSolves {
     /// KSP and PC that the user has chosen.
     pub solver: String,
     /// Whether FGMRES iterates around them.
@@ -67,9 +67,9 @@ pub struct Distributed {
 }
 
 /// The user's solver as a preconditioner.
-struct Inner(Ksp);
+struct InnerSolver(Ksp);
 
-impl ShellPc for Inner {
+impl ShellPc for InnerSolver {
     fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         // It need not converge, only help.
         self.0.solve(x, y)
@@ -87,8 +87,8 @@ impl Distributed {
     /// Collective.
     pub fn new(
         session: &Session,
-        (pattern, here): (&Pattern, &Csr),
-        rows: [&Rows; 2],
+        (pattern, here): (&BlockPattern, &Csr),
+        rows: [&KernelRows; 2],
         (dropped, unsymmetric): (&[u32], bool),
         prefix: &str,
         motions: impl FnOnce(&PetscVec, &Range<usize>) -> Result<Vec<PetscVec>>,
@@ -153,14 +153,14 @@ impl Distributed {
         let (residual, defect) = new.tried()?;
         new.defect = defect;
         // Not every solver has a transpose.
-        let transposed = !unsymmetric || session.agree(new.apply(Side::Transposed)).is_ok();
+        let transposed = !unsymmetric || session.agree(new.apply(InverseSide::Transposed)).is_ok();
         let exact = new.ksp.type_name()? == "preonly" && residual <= EXACT;
         if !exact || !transposed {
             let around = Ksp::new(session, Comm::World)?;
             around.set_operators(&new.matrix, &new.matrix)?;
             around.set_type("fgmres")?;
             around.set_tolerances(Some(EXACT), Some(0.0), None, Some(ITERATIONS))?;
-            let inner = Inner(new.ksp.clone());
+            let inner = InnerSolver(new.ksp.clone());
             around
                 .pc()?
                 .set_shell("the solver that was chosen", Box::new(inner))?;
@@ -179,8 +179,8 @@ impl Distributed {
     }
 
     /// How it solves, and how often it did.
-    pub fn work(&self) -> Result<Work> {
-        Ok(Work {
+    pub fn work(&self) -> Result<CoarseSolves> {
+        Ok(CoarseSolves {
             solver: format!(
                 "{} with {}",
                 self.ksp.type_name()?,
@@ -202,7 +202,7 @@ impl Distributed {
             .for_each(|(x, v)| *x = v);
         self.matrix.mult(&x, &self.rhs)?;
         let b = self.rhs.norm2()?;
-        self.apply(Side::Plain)?;
+        self.apply(InverseSide::Plain)?;
         let rest = x.duplicate()?;
         self.matrix.mult(&self.solution, &rest)?;
         rest.axpy(-1.0, &self.rhs)?;
@@ -211,7 +211,7 @@ impl Distributed {
     }
 
     /// solution ← A⁻¹ rhs for the scaled matrix.
-    fn apply(&self, side: Side) -> Result<()> {
+    fn apply(&self, side: InverseSide) -> Result<()> {
         self.solves.set(self.solves.get() + 1);
         let reason = match (&self.around, side) {
             // Rounding apart the matrix is symmetric, and preconditioners need not have a transpose.
@@ -221,7 +221,7 @@ impl Distributed {
                     .set(self.iterations.get() + around.iterations()?);
                 around.converged_reason()?
             }
-            (None, Side::Transposed) if self.unsymmetric => {
+            (None, InverseSide::Transposed) if self.unsymmetric => {
                 return self.ksp.solve_transpose(&self.rhs, &self.solution);
             }
             (None, _) => return self.ksp.solve(&self.rhs, &self.solution),
@@ -245,9 +245,9 @@ impl Distributed {
     pub fn remove(
         &self,
         x: &PetscVec,
-        (from, along): (&Rows, &Rows),
+        (from, along): (&KernelRows, &KernelRows),
         scratch: &mut [f64],
-        side: Side,
+        side: InverseSide,
     ) -> Result<()> {
         self.needed.iter().for_each(|&c| scratch[c as usize] = 0.0);
         from.add_transpose(&x.array()?, scratch);
@@ -266,7 +266,7 @@ impl Distributed {
     }
 
     /// x ← (GᵀQG)⁻¹ x or its transpose, the same on every rank. Collective.
-    pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+    pub fn solve(&self, x: &mut [f64], side: InverseSide) -> Result<()> {
         self.rhs.array_mut()?.copy_from_slice(&x[self.own.clone()]);
         self.scale(&self.rhs)?;
         self.apply(side)?;

@@ -3,9 +3,9 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::columns::KernelColumns;
-use super::motion::Motion;
+use super::kernel_motion::KernelMotion;
 use super::natural::NaturalCoarse;
-use super::twist::{twists, Twist};
+use super::rigid_motion::{twists, RigidMotion};
 use super::words::{as_one, in_words};
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
@@ -48,7 +48,7 @@ impl NaturalCoarse {
         comm: &SimpleCommunicator,
         problem: &Problem,
         stiffness: &Stiffness,
-        motions: &[Motion],
+        motions: &[KernelMotion],
     ) -> Vec<FreeMotion> {
         if motions.is_empty() {
             return Vec::new();
@@ -64,10 +64,10 @@ impl NaturalCoarse {
 pub(super) fn grouped(
     problem: &Problem,
     columns: &KernelColumns,
-    motions: &[Motion],
-    twists: &[Vec<Twist>],
+    motions: &[KernelMotion],
+    twists: &[Vec<RigidMotion>],
 ) -> Vec<FreeMotion> {
-    let bodies_of = |motion: &Motion| {
+    let bodies_of = |motion: &KernelMotion| {
         let largest = motion.largest();
         let part = motion.0.iter().filter(|e| e.1.abs() > PART * largest);
         distinct(part.map(|e| columns.body(e.0)))
@@ -79,7 +79,7 @@ pub(super) fn grouped(
     let mut out = Vec::new();
     for group in keyed.chunk_by(|a, b| a.0 == b.0) {
         let bodies: Vec<usize> = group[0].0.iter().map(|&b| b as usize).collect();
-        let all: Vec<&[Twist]> = group.iter().map(|g| &twists[g.1][..]).collect();
+        let all: Vec<&[RigidMotion]> = group.iter().map(|g| &twists[g.1][..]).collect();
         let many = bodies.len() > 1;
         let mut add = |words: String| {
             let bodies = bodies.clone();
@@ -88,7 +88,7 @@ pub(super) fn grouped(
         if all.iter().any(|twists| twists.len() != bodies.len()) {
             add(if many { "move freely" } else { "moves freely" }.into());
         } else if all.iter().all(|twists| as_one(twists)) {
-            let first: Vec<Twist> = all.iter().map(|twists| twists[0]).collect();
+            let first: Vec<RigidMotion> = all.iter().map(|twists| twists[0]).collect();
             let together = if many { " together" } else { "" };
             add(in_words(&first, many) + together);
         } else {

@@ -8,16 +8,16 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use super::alone::{alone, null_vector};
-use super::known::Known;
-use super::motion::{Motion, NOTHING, NOTHING_SOLVED};
-use super::raised::Raised;
-use super::shape::Shape;
+use super::column_map::ColumnMap;
+use super::gram_pattern::GramPattern;
+use super::kernel_motion::{KernelMotion, NOTHING, NOTHING_SOLVED};
 use super::weak::weak_columns;
+use super::woodbury::WoodburyFactor;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::{Semidefinite, DEPENDENT};
 use cholesky::shared::SharedCholesky;
-use cholesky::team::Team;
+use cholesky::team::FactorTeam;
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;
@@ -34,7 +34,7 @@ const WEIGHTED: f64 = 1e-13;
 const OUT: f64 = 1e300;
 
 /// A factor of A = GᵀG, scaled to a unit diagonal.
-pub(super) enum Factor {
+pub(super) enum GramFactor {
     Dense(Semidefinite),
     Sparse {
         factor: SharedCholesky,
@@ -42,17 +42,17 @@ pub(super) enum Factor {
         scale: Vec<f64>,
     },
     /// That of fewer rows, and some more rows.
-    Raised(Box<Raised>),
+    Raised(Box<WoodburyFactor>),
 }
 
 /// GᵀG, factored; dependent columns are left out. Answers are the same on every rank.
 pub struct Gram {
-    pub(super) factor: Factor,
-    pub(super) known: Rc<Known>,
+    pub(super) factor: GramFactor,
+    pub(super) known: Rc<ColumnMap>,
     /// The names of columns that are left out, increasing.
     pub dropped: Vec<u32>,
     /// A basis of the motions on which the rows vanish: one for each column that is left out, in their order.
-    pub unheld: Vec<Motion>,
+    pub unheld: Vec<KernelMotion>,
     /// Smallest eigenvalue of the scaled matrix by inverse iteration; zero before that, and where it is tiny.
     pub(super) smallest: Cell<f64>,
 }
@@ -60,7 +60,7 @@ pub struct Gram {
 impl Gram {
     /// Factors `a`, a GᵀG of this shape. A rank needs the rows that it has in the factor, and all of few columns.
     /// Collective.
-    pub fn new(shape: &Shape, a: Csr) -> Gram {
+    pub fn new(shape: &GramPattern, a: Csr) -> Gram {
         Gram::without(shape, a, (&[], &[]))
     }
 
@@ -68,14 +68,14 @@ impl Gram {
     /// well: each depends on the others though its pivot does not show it. Single bodies are free to move where the
     /// rows do no more than `noise`, given for each column of their body; it is empty where directions are exact.
     /// Collective.
-    pub fn without(shape: &Shape, a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
+    pub fn without(shape: &GramPattern, a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
         match shape.team() {
             None => Gram::few(shape, &a, noise),
             Some(team) => Gram::many(shape, team, a, (hidden, noise)),
         }
     }
 
-    fn few(shape: &Shape, a: &Csr, noise: &[f64]) -> Gram {
+    fn few(shape: &GramPattern, a: &Csr, noise: &[f64]) -> Gram {
         let mut dense = Dense::zeros(a.n(), a.n());
         for i in 0..a.n() {
             let (col, val) = a.row(i);
@@ -87,18 +87,23 @@ impl Gram {
         let dropped = factor.dropped();
         let vector = |&k: &usize| {
             let v = null_vector(&dense, &factor, k);
-            Motion::above(NOTHING, (0..).zip(v.iter().copied()))
+            KernelMotion::above(NOTHING, (0..).zip(v.iter().copied()))
         };
         Gram {
             unheld: dropped.iter().map(vector).collect(),
             dropped: dropped.iter().map(|&k| k as u32).collect(),
-            factor: Factor::Dense(factor),
+            factor: GramFactor::Dense(factor),
             known: shape.known.clone(),
             smallest: Cell::new(0.0),
         }
     }
 
-    fn many(shape: &Shape, team: &Rc<Team>, mut a: Csr, (hidden, noise): (&[u32], &[f64])) -> Gram {
+    fn many(
+        shape: &GramPattern,
+        team: &Rc<FactorTeam>,
+        mut a: Csr,
+        (hidden, noise): (&[u32], &[f64]),
+    ) -> Gram {
         let known = &shape.known;
         let mut scale = scale_own_rows(shape, team, &mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
@@ -119,7 +124,7 @@ impl Gram {
             together
                 .iter()
                 .zip(vectors)
-                .map(|(&k, v)| (k, Motion::above(NOTHING_SOLVED, v.iter().copied()))),
+                .map(|(&k, v)| (k, KernelMotion::above(NOTHING_SOLVED, v.iter().copied()))),
         );
         let left_out: Vec<u32> = dropped.iter().filter_map(|&k| known.here(k)).collect();
         alone.extend(hidden.iter().zip(minus).map(|(&k, mut v)| {
@@ -134,7 +139,7 @@ impl Gram {
         alone.sort_by_key(|m| m.0);
         left_out.iter().for_each(|&k| scale[k as usize] = 0.0);
         Gram {
-            factor: Factor::Sparse { factor, scale },
+            factor: GramFactor::Sparse { factor, scale },
             known: known.clone(),
             dropped,
             unheld: alone.into_iter().map(|m| m.1).collect(),
@@ -145,7 +150,7 @@ impl Gram {
     /// The factor of a weighted product GᵀQG, Q positive definite, that leaves out the columns that `plain` leaves out:
     /// weights do not change what rows hold, but hide it where they differ by many orders. `None` if the columns are
     /// few, or dependent beyond that after rounding. Collective.
-    pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
+    pub fn weighted(shape: &GramPattern, mut a: Csr, plain: &Gram) -> Option<Gram> {
         let team = shape.team()?;
         let mut scale = scale_own_rows(shape, team, &mut a);
         for k in plain.dropped.iter().filter_map(|&k| shape.known.here(k)) {
@@ -154,7 +159,7 @@ impl Gram {
         }
         let (factor, more) = SharedCholesky::semidefinite(&a, team.clone(), WEIGHTED);
         more.is_empty().then(|| Gram {
-            factor: Factor::Sparse { factor, scale },
+            factor: GramFactor::Sparse { factor, scale },
             known: shape.known.clone(),
             dropped: plain.dropped.clone(),
             unheld: Vec::new(),
@@ -166,13 +171,13 @@ impl Gram {
     /// Collective.
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
-            Factor::Dense(factor) => factor.solve(x),
-            Factor::Sparse { factor, scale } => {
+            GramFactor::Dense(factor) => factor.solve(x),
+            GramFactor::Sparse { factor, scale } => {
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
                 solve(factor, &self.known, x);
                 x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
             }
-            Factor::Raised(raised) => raised.solve(x),
+            GramFactor::Raised(raised) => raised.solve(x),
         }
     }
 
@@ -182,9 +187,9 @@ impl Gram {
     /// If the columns are few.
     pub fn solve_shares(&self, x: &mut [f64]) {
         let (factor, scale) = match &self.factor {
-            Factor::Sparse { factor, scale } => (factor, scale),
-            Factor::Raised(raised) => return raised.solve_shares(x),
-            Factor::Dense(_) => unreachable!("few columns are not shared"),
+            GramFactor::Sparse { factor, scale } => (factor, scale),
+            GramFactor::Raised(raised) => return raised.solve_shares(x),
+            GramFactor::Dense(_) => unreachable!("few columns are not shared"),
         };
         let scaled = |x: &mut [f64]| {
             let pairs = x.iter_mut().zip(factor.team().dofs());
@@ -201,7 +206,7 @@ impl Gram {
     }
 
     /// The columns that this rank knows.
-    pub fn known(&self) -> &Rc<Known> {
+    pub fn known(&self) -> &Rc<ColumnMap> {
         &self.known
     }
 
@@ -209,19 +214,19 @@ impl Gram {
     /// because [`weakest`](Gram::weakest) has not been asked.
     pub fn smallest_eigenvalue(&self) -> f64 {
         match &self.factor {
-            Factor::Raised(raised) => raised.smallest_eigenvalue(),
+            GramFactor::Raised(raised) => raised.smallest_eigenvalue(),
             _ => self.smallest.get(),
         }
     }
 
     /// Whether the factor is a sparse one.
     pub fn is_sparse(&self) -> bool {
-        !matches!(self.factor, Factor::Dense(_))
+        !matches!(self.factor, GramFactor::Dense(_))
     }
 }
 
 /// Few columns without those of single bodies that are best left out: their motions count as free.
-fn without_weak(shape: &Shape, a: &Dense, noise: &[f64]) -> Dense {
+fn without_weak(shape: &GramPattern, a: &Dense, noise: &[f64]) -> Dense {
     let mut out = a.clone();
     if noise.is_empty() {
         return out;
@@ -240,7 +245,7 @@ fn without_weak(shape: &Shape, a: &Dense, noise: &[f64]) -> Dense {
 }
 
 /// x ← A⁺ x for the scaled matrix of this factor. Collective.
-fn solve(factor: &SharedCholesky, known: &Known, x: &mut [f64]) {
+fn solve(factor: &SharedCholesky, known: &ColumnMap, x: &mut [f64]) {
     if !known.is_part() {
         return factor.solve(x);
     }
@@ -255,7 +260,7 @@ fn solve(factor: &SharedCholesky, known: &Known, x: &mut [f64]) {
 }
 
 /// The column of −A with this name, without its diagonal entry. A rank has its own rows. Collective.
-fn minus_column(known: &Known, team: &Team, a: &Csr, name: u32) -> Vec<f64> {
+fn minus_column(known: &ColumnMap, team: &FactorTeam, a: &Csr, name: u32) -> Vec<f64> {
     let mut out = vec![0.0; a.n()];
     if let Some(k) = known.here(name).filter(|&k| team.has(k)) {
         let (col, val) = a.row(k as usize);
@@ -268,14 +273,14 @@ fn minus_column(known: &Known, team: &Team, a: &Csr, name: u32) -> Vec<f64> {
 }
 
 /// Leaves a column out.
-fn leave_out(team: &Team, a: &mut Csr, column: u32) {
+fn leave_out(team: &FactorTeam, a: &mut Csr, column: u32) {
     if team.has(column) {
         a.set_diagonal(column as usize, OUT);
     }
 }
 
 /// The diagonal of a matrix of which each rank has its rows. Collective.
-pub(super) fn diagonal_of_own_rows(known: &Known, team: &Team, a: &Csr) -> Vec<f64> {
+pub(super) fn diagonal_of_own_rows(known: &ColumnMap, team: &FactorTeam, a: &Csr) -> Vec<f64> {
     let mut diagonal = vec![0.0; a.n()];
     for dof in team.own_dofs() {
         diagonal[dof as usize] = a.get(dof as usize, dof as usize);
@@ -286,7 +291,7 @@ pub(super) fn diagonal_of_own_rows(known: &Known, team: &Team, a: &Csr) -> Vec<f
 
 /// A ← D⁻¹ A D⁻¹ with D² the diagonal of A, in the rows that this rank has; returns 1/D, one where the diagonal
 /// vanishes. Collective.
-fn scale_own_rows(shape: &Shape, team: &Team, a: &mut Csr) -> Vec<f64> {
+fn scale_own_rows(shape: &GramPattern, team: &FactorTeam, a: &mut Csr) -> Vec<f64> {
     let diagonal = diagonal_of_own_rows(&shape.known, team, a);
     scale(a, &diagonal, team.own_dofs().map(|dof| dof as usize))
 }

@@ -10,13 +10,13 @@ use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::distributed::{Distributed, Work};
+use super::column_map::ColumnMap;
+use super::distributed::{CoarseSolves, Distributed};
 use super::gram::{scale_to_unit_diagonal, Gram, REGULAR};
-use super::known::Known;
-use super::refined::{probe, Refined};
-use super::rows::Rows;
-use super::shape::Shape;
-use super::spread::Spread;
+use super::gram_pattern::GramPattern;
+use super::refined::{probe, RefinedFactor};
+use super::rows::KernelRows;
+use super::team_factor::TeamFactor;
 use crate::feti::settings::ProjectorKind;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
@@ -25,7 +25,7 @@ use petsc::{Comm, Ksp, Mat, Options, Session, Vec as PetscVec};
 
 /// The inverse or its transpose.
 #[derive(Clone, Copy)]
-pub enum Side {
+pub enum InverseSide {
     /// (Gᵀ Q G)⁻¹
     Plain,
     /// (Gᵀ Q G)⁻ᵀ
@@ -44,28 +44,28 @@ const STRONG: f64 = 1e-3;
 
 /// (Gᵀ Q G)⁻¹.
 pub struct Gtg {
-    solver: Solver,
+    solver: GtgSolver,
     /// GᵀG of the rows that hold: what they hold.
     pub gram: Rc<Gram>,
     /// The way of distributed vectors to the factor, where ranks share it.
-    spread: Option<Rc<Spread>>,
+    spread: Option<Rc<TeamFactor>>,
     scratch: RefCell<Vec<f64>>,
 }
 
-enum Solver {
+enum GtgSolver {
     /// The factor of GᵀG, where Q = I.
     Own,
     /// The factor of GᵀQG.
-    Weighted(Box<Refined>),
+    Weighted(Box<RefinedFactor>),
     /// LU of every rank.
-    Petsc(Scaled),
+    Petsc(ScaledKsp),
     /// The user's choice.
     Chosen(Box<Distributed>),
 }
 
 /// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹; D² is the diagonal of Gᵀ Q G. The scaling is needed with Q = M⁻¹: the rows
 /// of stiff and soft bodies differ by the square of the jump in ρ.
-struct Scaled {
+struct ScaledKsp {
     /// The solver, on this rank alone.
     ksp: Ksp,
     /// 1/D.
@@ -81,21 +81,21 @@ impl Gtg {
     /// `chosen` makes a solver of the user's choice. Collective.
     pub fn new(
         session: &Session,
-        (shape, gram): (&Shape, Rc<Gram>),
+        (shape, gram): (&GramPattern, Rc<Gram>),
         q: ProjectorKind,
-        [g, qg]: [&Rows; 2],
+        [g, qg]: [&KernelRows; 2],
         prefix: &str,
         chosen: impl FnOnce(&Gram) -> Result<Distributed>,
     ) -> Result<Gtg> {
         let comm = session.comm();
-        let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
+        let petsc = |a: Csr| ScaledKsp::new(session, &gram, a, prefix).map(GtgSolver::Petsc);
         let solver = match q {
-            _ if Options::new(session, prefix).any()? => Solver::Chosen(chosen(&gram)?.into()),
-            ProjectorKind::Identity if gram.is_sparse() => Solver::Own,
+            _ if Options::new(session, prefix).any()? => GtgSolver::Chosen(chosen(&gram)?.into()),
+            ProjectorKind::Identity if gram.is_sparse() => GtgSolver::Own,
             _ if gram.is_sparse() => {
                 let both = shape.product_and_transpose(comm, g, qg);
-                match Refined::weighted(shape, both, &gram) {
-                    Ok(factor) => Solver::Weighted(factor.into()),
+                match RefinedFactor::weighted(shape, both, &gram) {
+                    Ok(factor) => GtgSolver::Weighted(factor.into()),
                     Err(a) => petsc(shape.gathered(comm, a))?,
                 }
             }
@@ -128,38 +128,38 @@ impl Gtg {
     /// Whether a factor of many columns has no smaller eigenvalue, or no larger defect.
     fn loses_less(&self, eigenvalue: f64, defect: f64) -> bool {
         match &self.solver {
-            Solver::Own => self.gram.smallest_eigenvalue() > eigenvalue,
-            Solver::Weighted(factor) => factor.plain().is_some() && factor.defect <= defect,
-            Solver::Petsc(_) | Solver::Chosen(_) => false,
+            GtgSolver::Own => self.gram.smallest_eigenvalue() > eigenvalue,
+            GtgSolver::Weighted(factor) => factor.plain().is_some() && factor.defect <= defect,
+            GtgSolver::Petsc(_) | GtgSolver::Chosen(_) => false,
         }
     }
 
     /// Vectors go to the shared factor this way from now on.
-    pub fn set_spread(&mut self, spread: Option<Rc<Spread>>) {
+    pub fn set_spread(&mut self, spread: Option<Rc<TeamFactor>>) {
         self.spread = spread;
     }
 
     fn shared(&self) -> Option<&Gram> {
         match &self.solver {
-            Solver::Own => Some(&self.gram),
-            Solver::Weighted(factor) => factor.plain(),
-            Solver::Petsc(_) | Solver::Chosen(_) => None,
+            GtgSolver::Own => Some(&self.gram),
+            GtgSolver::Weighted(factor) => factor.plain(),
+            GtgSolver::Petsc(_) | GtgSolver::Chosen(_) => None,
         }
     }
 
     /// PETSc's solver, if it is one.
     pub fn ksp(&self) -> Option<&Ksp> {
         match &self.solver {
-            Solver::Own | Solver::Weighted(_) => None,
-            Solver::Petsc(scaled) => Some(&scaled.ksp),
-            Solver::Chosen(chosen) => Some(chosen.ksp()),
+            GtgSolver::Own | GtgSolver::Weighted(_) => None,
+            GtgSolver::Petsc(scaled) => Some(&scaled.ksp),
+            GtgSolver::Chosen(chosen) => Some(chosen.ksp()),
         }
     }
 
     /// How the user's solver works, if there is one.
-    pub fn work(&self) -> Result<Option<Work>> {
+    pub fn work(&self) -> Result<Option<CoarseSolves>> {
         match &self.solver {
-            Solver::Chosen(chosen) => chosen.work().map(Some),
+            GtgSolver::Chosen(chosen) => chosen.work().map(Some),
             _ => Ok(None),
         }
     }
@@ -169,35 +169,35 @@ impl Gtg {
     pub fn defect(&self) -> Result<f64> {
         match &self.solver {
             // G alone has no jumps.
-            Solver::Own => Ok(0.0),
-            Solver::Weighted(factor) => Ok(factor.defect),
-            Solver::Petsc(scaled) => scaled.defect(),
-            Solver::Chosen(chosen) => Ok(chosen.defect),
+            GtgSolver::Own => Ok(0.0),
+            GtgSolver::Weighted(factor) => Ok(factor.defect),
+            GtgSolver::Petsc(scaled) => scaled.defect(),
+            GtgSolver::Chosen(chosen) => Ok(chosen.defect),
         }
     }
 
     /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x for a vector of columns that is the same wherever they are known. Collective.
-    pub fn solve(&self, comm: &SimpleCommunicator, x: &mut [f64], side: Side) -> Result<()> {
+    pub fn solve(&self, comm: &SimpleCommunicator, x: &mut [f64], side: InverseSide) -> Result<()> {
         match &self.solver {
-            Solver::Own => {
+            GtgSolver::Own => {
                 self.gram.solve(x);
                 Ok(())
             }
-            Solver::Weighted(factor) => {
+            GtgSolver::Weighted(factor) => {
                 factor.solve(x, side);
                 Ok(())
             }
-            Solver::Petsc(scaled) => {
+            GtgSolver::Petsc(scaled) => {
                 let mut whole = self.known().whole(comm, x);
                 scaled.solve(&mut whole, side)?;
                 x.copy_from_slice(&self.known().part_of(&whole));
                 Ok(())
             }
-            Solver::Chosen(chosen) => chosen.solve(x, side),
+            GtgSolver::Chosen(chosen) => chosen.solve(x, side),
         }
     }
 
-    fn known(&self) -> &Known {
+    fn known(&self) -> &ColumnMap {
         self.gram.known()
     }
 
@@ -209,7 +209,7 @@ impl Gtg {
         comm: &SimpleCommunicator,
         c: &mut [f64],
         b: Option<&[f64]>,
-        side: Side,
+        side: InverseSide,
     ) -> Result<()> {
         if let (Some(factor), Some(spread)) = (self.shared(), &self.spread) {
             return spread.solve(factor, c, b);
@@ -226,12 +226,12 @@ impl Gtg {
         &self,
         comm: &SimpleCommunicator,
         x: &PetscVec,
-        from: &Rows,
-        along: &Rows,
-        side: Side,
+        from: &KernelRows,
+        along: &KernelRows,
+        side: InverseSide,
     ) -> Result<()> {
         let mut c = self.scratch.borrow_mut();
-        if let Solver::Chosen(chosen) = &self.solver {
+        if let GtgSolver::Chosen(chosen) = &self.solver {
             return chosen.remove(x, (from, along), &mut c, side);
         }
         if let (Some(factor), Some(spread)) = (self.shared(), &self.spread) {
@@ -263,8 +263,8 @@ pub(super) fn direct(session: &Session, comm: Comm, matrix: &Mat, prefix: &str) 
     Ok(ksp)
 }
 
-impl Scaled {
-    fn new(session: &Session, gram: &Gram, mut a: Csr, prefix: &str) -> Result<Scaled> {
+impl ScaledKsp {
+    fn new(session: &Session, gram: &Gram, mut a: Csr, prefix: &str) -> Result<ScaledKsp> {
         let r = a.n();
         let scale = scale_to_unit_diagonal(&mut a);
         // G alone decides which bodies are held: with Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
@@ -287,7 +287,7 @@ impl Scaled {
         }
         let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
         let ksp = direct(session, Comm::Own, &matrix, prefix)?;
-        Ok(Scaled {
+        Ok(ScaledKsp {
             ksp,
             scale,
             rhs: PetscVec::seq(session, r)?,
@@ -308,12 +308,12 @@ impl Scaled {
         Ok(self.solution.norm_inf()? / x.norm_inf()?)
     }
 
-    fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+    fn solve(&self, x: &mut [f64], side: InverseSide) -> Result<()> {
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
         self.rhs.array_mut()?.copy_from_slice(x);
         match side {
-            Side::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
-            Side::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
+            InverseSide::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
+            InverseSide::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
         }
         let reason = self.ksp.converged_reason()?;
         if reason.code < 0 {

@@ -2,7 +2,7 @@
 
 use super::balance::KernelLoad;
 use super::columns::KernelColumns;
-use super::motion::Motion;
+use super::kernel_motion::KernelMotion;
 use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Problem;
@@ -37,7 +37,7 @@ impl NaturalCoarse {
 
     /// A driven motion in words, to follow what is said of its bodies: " where it slides along x". Empty where one is
     /// free altogether, or several do not move as one. Collective.
-    pub fn way(&self, problem: &Problem, stiffness: &Stiffness, motion: &Motion) -> String {
+    pub fn way(&self, problem: &Problem, stiffness: &Stiffness, motion: &KernelMotion) -> String {
         let comm = stiffness.comm();
         let bodies = distinct(motion.0.iter().map(|e| self.columns.body(e.0) as usize));
         // Other free motions of the same bodies belong to the name of this one.
@@ -54,13 +54,13 @@ impl NaturalCoarse {
     }
 
     /// Combinations of kernel vectors on which all rows vanish.
-    pub fn unheld(&self) -> &[Motion] {
+    pub fn unheld(&self) -> &[KernelMotion] {
         self.gtg.as_ref().map_or(&[], |gtg| &gtg.gram.unheld)
     }
 }
 
 /// The bodies that a combination of kernel vectors moves, as the beginning of a sentence: "body "a" is".
-pub fn moving(problem: &Problem, columns: &KernelColumns, motion: &Motion) -> String {
+pub fn moving(problem: &Problem, columns: &KernelColumns, motion: &KernelMotion) -> String {
     let bodies = moved(columns, motion);
     let names: Vec<String> = (bodies.into_iter())
         .map(|b| format!("\"{}\"", problem.body_names[b as usize]))
@@ -74,12 +74,12 @@ pub fn moving(problem: &Problem, columns: &KernelColumns, motion: &Motion) -> St
 
 /// A remark on a body that a combination of kernel vectors moves, to be put behind a sentence; empty unless the cells
 /// of the body leave motions without energy that are not rigid.
-pub fn weakness(problem: &Problem, columns: &KernelColumns, motion: &Motion) -> String {
+pub fn weakness(problem: &Problem, columns: &KernelColumns, motion: &KernelMotion) -> String {
     problem.weakness(&moved(columns, motion))
 }
 
 /// The bodies that a combination of kernel vectors moves.
-pub fn moved(columns: &KernelColumns, motion: &Motion) -> Vec<u32> {
+pub fn moved(columns: &KernelColumns, motion: &KernelMotion) -> Vec<u32> {
     let largest = motion.largest();
     let moved = motion.0.iter().filter(|e| e.1.abs() > 1e-8 * largest);
     distinct(moved.map(|e| columns.body(e.0)))

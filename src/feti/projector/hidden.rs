@@ -5,8 +5,8 @@
 //! slides under a last one which it lifts a little. Inverse iteration finds the vector; mostly a single solve tells
 //! that there is none.
 
-use super::gram::{Factor, Gram, REGULAR};
-use super::motion::{Motion, NOTHING_SOLVED};
+use super::gram::{Gram, GramFactor, REGULAR};
+use super::kernel_motion::{KernelMotion, NOTHING_SOLVED};
 use super::refined::probe;
 use parallel::exchange::sum_all;
 
@@ -20,8 +20,8 @@ const ROUNDING: f64 = 1e-13;
 impl Gram {
     /// The motion on which a sparse factor of all columns that it keeps is weakest, and the name of its column that is
     /// best left out; `None` if the factor is regular. Collective.
-    pub fn weakest(&self) -> Option<(u32, Motion)> {
-        let Factor::Sparse { factor, scale } = &self.factor else {
+    pub fn weakest(&self) -> Option<(u32, KernelMotion)> {
+        let GramFactor::Sparse { factor, scale } = &self.factor else {
             return None;
         };
         let team = factor.team();

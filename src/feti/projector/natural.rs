@@ -12,19 +12,19 @@ use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::blocks::{positions, Blocks};
+use super::blocks::{positions, ColumnBlocks};
+use super::column_map::ColumnMap;
 use super::columns::KernelColumns;
 use super::distributed::Distributed;
 use super::gram::Gram;
+use super::gram_matrix::GramMatrix;
+use super::gram_pattern::{FactorSharing, GramPattern};
 use super::graph::BodyGraph;
-use super::gtg::{Gtg, Side};
-use super::known::Known;
-use super::numbers::Numbers;
+use super::gtg::{Gtg, InverseSide};
 use super::pattern::meeting;
 use super::rounding::rounding_of_rows;
-use super::rows::Rows;
-use super::shape::{Shape, Sharing};
-use super::spread::Spread;
+use super::rows::KernelRows;
+use super::team_factor::TeamFactor;
 use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
@@ -56,31 +56,31 @@ pub struct NaturalCoarse {
     /// Which columns of R each body has.
     pub columns: KernelColumns,
     /// The columns that this rank knows. Those of the fields below are numbers.
-    known: Rc<Known>,
+    known: Rc<ColumnMap>,
     /// First column of R of each local subdomain's body.
     first_column: Vec<usize>,
     /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
     /// continuous inside a body.
-    pub all: Rows,
+    pub all: KernelRows,
     /// Where GᵀG has entries.
-    pub shape: Option<Shape>,
+    pub shape: Option<GramPattern>,
     /// Where GᵀQG has entries with Q = M⁻¹, and the graph that says so, once they are needed.
-    wide: OnceCell<Shape>,
+    wide: OnceCell<GramPattern>,
     graph: OnceCell<BodyGraph>,
     /// The largest ratio of the stiffnesses of bodies.
     pub(super) spread: f64,
     /// The way of distributed vectors to the shared factor of GᵀQG.
-    way: RefCell<Option<Rc<Spread>>>,
+    way: RefCell<Option<Rc<TeamFactor>>>,
     /// The last choice of rows that was asked for, and their GᵀG.
     pub(super) last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// The numbers of the last GᵀG that was factored.
-    pub(super) numbers: RefCell<Numbers>,
+    pub(super) numbers: RefCell<GramMatrix>,
     /// Squared work of rows that may be rounding of the input, by column (`noise`).
     pub(super) noise: Vec<f64>,
     /// G on the owned rows.
-    pub g: Rows,
+    pub g: KernelRows,
     /// Q G where it differs from G.
-    qg: Option<Rows>,
+    qg: Option<KernelRows>,
     /// Whether M⁻¹ alone was not enough for Q.
     mended: bool,
     /// (Gᵀ Q G)⁻¹, where a body floats.
@@ -110,9 +110,9 @@ impl NaturalCoarse {
             columns,
             projector: ProjectorKind::Identity,
             kernels,
-            known: Known::all(r).into(),
+            known: ColumnMap::all(r).into(),
             first_column: vec![0; problem.local.len()],
-            all: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
+            all: KernelRows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             shape: None,
             wide: OnceCell::new(),
             graph: OnceCell::new(),
@@ -121,7 +121,7 @@ impl NaturalCoarse {
             last: RefCell::new(None),
             numbers: RefCell::default(),
             noise: Vec::new(),
-            g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
+            g: KernelRows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
             mended: false,
             gtg: None,
@@ -149,7 +149,7 @@ impl NaturalCoarse {
 
     /// Whether all ranks share one factor of many columns.
     fn team_of_all(&self) -> bool {
-        let team = self.shape.as_ref().and_then(Shape::team);
+        let team = self.shape.as_ref().and_then(GramPattern::team);
         team.is_some_and(|team| team.is_shared())
     }
 
@@ -161,7 +161,7 @@ impl NaturalCoarse {
         let start = self.columns.start();
         let lists = meeting(comm, &self.all, &self.all, start);
         let order = || {
-            let blocks = Blocks::of_rows(comm, &self.all, start);
+            let blocks = ColumnBlocks::of_rows(comm, &self.all, start);
             (blocks, positions(comm, problem))
         };
         // With Q = M⁻¹ rows reach far, and the solver of the user's choice has its own columns on each rank.
@@ -172,11 +172,11 @@ impl NaturalCoarse {
             columns.start as u32..columns.end as u32
         };
         let of_bodies = problem.local.iter().flat_map(|sub| names(sub.body));
-        let sharing = Sharing {
+        let sharing = FactorSharing {
             known: (!all).then(|| distinct(of_bodies)),
             ..self.sharing()
         };
-        let shape = Shape::ordered(comm, &lists, start, order, &sharing);
+        let shape = GramPattern::ordered(comm, &lists, start, order, &sharing);
         drop(sharing);
         let first = |sub: &Subdomain| shape.known.numbers(names(sub.body)).start;
         self.first_column = problem.local.iter().map(first).collect();
@@ -253,7 +253,7 @@ impl NaturalCoarse {
             ProjectorKind::Preconditioner => {
                 let graph = self.graph(problem, stiffness);
                 self.wide
-                    .get_or_init(|| Shape::new(comm, &graph.second(), start, &self.sharing()))
+                    .get_or_init(|| GramPattern::new(comm, &graph.second(), start, &self.sharing()))
             }
             _ => self.shape.as_ref().expect("a body floats"),
         };
@@ -291,7 +291,7 @@ impl NaturalCoarse {
 
     /// The way to the factor of this shape for the rows of G and Q G: the one that is known if it suffices.
     /// Collective.
-    fn spread_for(&self, session: &Session, shape: &Shape) -> Result<Option<Rc<Spread>>> {
+    fn spread_for(&self, session: &Session, shape: &GramPattern) -> Result<Option<Rc<TeamFactor>>> {
         let Some(team) = shape.team().filter(|team| team.is_shared()) else {
             return Ok(None);
         };
@@ -299,21 +299,21 @@ impl NaturalCoarse {
         let wide = self.qg.as_ref();
         let wide = wide.filter(|_| self.projector == ProjectorKind::Preconditioner);
         let mut known = self.way.borrow_mut();
-        let suffices = |s: &Rc<Spread>| s.fits(team) && wide.is_none_or(|qg| s.covers(qg));
+        let suffices = |s: &Rc<TeamFactor>| s.fits(team) && wide.is_none_or(|qg| s.covers(qg));
         if any(session.comm(), !known.as_ref().is_some_and(suffices)) {
             let all = std::iter::once(&self.all).chain(wide);
             let of_rows = all.flat_map(|r| r.columns().iter().copied());
             let kernels = self.kernels.iter().zip(&self.first_column);
             let of_bodies = kernels.flat_map(|(k, &first)| first as u32..(first + k.cols) as u32);
             let columns = distinct(of_rows.chain(of_bodies));
-            *known = Some(Spread::new(session, team, &columns)?.into());
+            *known = Some(TeamFactor::new(session, team, &columns)?.into());
         }
         Ok(known.clone())
     }
 
     /// How ranks share the factors.
-    fn sharing(&self) -> Sharing<'_> {
-        Sharing {
+    fn sharing(&self) -> FactorSharing<'_> {
+        FactorSharing {
             home: self.columns.home(),
             rows: Some(&self.all),
             known: None,
@@ -321,7 +321,7 @@ impl NaturalCoarse {
     }
 
     /// The columns that this rank knows.
-    pub fn known(&self) -> &Rc<Known> {
+    pub fn known(&self) -> &Rc<ColumnMap> {
         &self.known
     }
 
@@ -332,7 +332,7 @@ impl NaturalCoarse {
     }
 
     /// G = Z B R for the rows that hold.
-    fn assemble_g(&self, stiffness: &Stiffness) -> Rows {
+    fn assemble_g(&self, stiffness: &Stiffness) -> KernelRows {
         let mut g = self.all.clone();
         let held = stiffness
             .jump
@@ -349,7 +349,7 @@ impl NaturalCoarse {
             return Ok(());
         };
         let mut known = self.known.part_of(x);
-        gtg.solve(comm, &mut known, Side::Plain)?;
+        gtg.solve(comm, &mut known, InverseSide::Plain)?;
         x.copy_from_slice(&self.known.whole(comm, &known));
         Ok(())
     }
@@ -360,14 +360,14 @@ impl NaturalCoarse {
     }
 
     /// Q G, which is G itself for Q = I.
-    pub fn qg(&self) -> &Rows {
+    pub fn qg(&self) -> &KernelRows {
         self.qg.as_ref().unwrap_or(&self.g)
     }
 
     /// λ ← P λ = λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ. Collective.
     pub fn project(&self, comm: &SimpleCommunicator, lambda: &PetscVec) -> Result<()> {
         match &self.gtg {
-            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), Side::Plain),
+            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), InverseSide::Plain),
             None => Ok(()),
         }
     }
@@ -375,7 +375,7 @@ impl NaturalCoarse {
     /// r ← Pᵀ r = r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r. Collective.
     pub fn project_transpose(&self, comm: &SimpleCommunicator, residual: &PetscVec) -> Result<()> {
         match &self.gtg {
-            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed),
+            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, InverseSide::Transposed),
             None => Ok(()),
         }
     }

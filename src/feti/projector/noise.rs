@@ -18,13 +18,17 @@ use mpi::topology::SimpleCommunicator;
 
 use super::by_column::ByColumn;
 use super::gram::Gram;
-use super::motion::Motion;
+use super::kernel_motion::KernelMotion;
 use super::natural::NaturalCoarse;
-use super::rows::Rows;
+use super::rows::KernelRows;
 
 impl NaturalCoarse {
     /// All rows of B R, of which only the chosen ones may hold, without what they do by rounding alone. Collective.
-    pub fn rows_without_noise(&self, comm: &SimpleCommunicator, chosen: &[bool]) -> Cow<'_, Rows> {
+    pub fn rows_without_noise(
+        &self,
+        comm: &SimpleCommunicator,
+        chosen: &[bool],
+    ) -> Cow<'_, KernelRows> {
         if self.noise.is_empty() {
             Cow::Borrowed(&self.all)
         } else {
@@ -34,12 +38,12 @@ impl NaturalCoarse {
 
     /// G without what its rows do by rounding alone on the motions that count as free: they do nothing on these then,
     /// and multipliers need not balance it.
-    pub(super) fn without_noise(&self, g: Rows, gram: &Gram) -> Rows {
+    pub(super) fn without_noise(&self, g: KernelRows, gram: &Gram) -> KernelRows {
         if self.noise.is_empty() {
             return g;
         }
         let motions = ByColumn::new(self.known(), gram.unheld.iter());
-        let largest: Vec<f64> = gram.unheld.iter().map(Motion::largest).collect();
+        let largest: Vec<f64> = gram.unheld.iter().map(KernelMotion::largest).collect();
         g.across(&motions, &largest, |c| self.noise[c as usize].sqrt())
     }
 }

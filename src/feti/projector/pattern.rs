@@ -5,7 +5,7 @@ use std::ops::Range;
 use faer::MatRef;
 use mpi::topology::SimpleCommunicator;
 
-use super::rows::Rows;
+use super::rows::KernelRows;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
@@ -15,7 +15,7 @@ use parallel::exchange::gather_all;
 /// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. A rank may have the
 /// rows of some bodies alone; the others are empty there.
 #[derive(Debug)]
-pub struct Pattern {
+pub struct BlockPattern {
     /// First column of each body, and the end; length n_bodies + 1.
     start: Vec<usize>,
     /// The body of each column.
@@ -29,7 +29,12 @@ pub struct Pattern {
 
 /// For each body those that it meets in rows of A and of B, which are distributed alike, and itself, increasing.
 /// `start` has the first column of each body. The same on every rank. Collective.
-pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Vec<Vec<u32>> {
+pub fn meeting(
+    comm: &SimpleCommunicator,
+    a: &KernelRows,
+    b: &KernelRows,
+    start: &[usize],
+) -> Vec<Vec<u32>> {
     let n = start.len() - 1;
     let body = body_of_columns(start);
     let mut pairs: Vec<[u32; 2]> = Vec::new();
@@ -55,11 +60,11 @@ pub fn meeting(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -
     })
 }
 
-impl Pattern {
+impl BlockPattern {
     /// The pattern with entries for each body and those in its list, which increases and contains the body itself, in
     /// the rows of bodies that are `here`.
-    pub fn new(lists: &[Vec<u32>], start: &[usize], here: impl Fn(usize) -> bool) -> Pattern {
-        let mut pattern = Pattern {
+    pub fn new(lists: &[Vec<u32>], start: &[usize], here: impl Fn(usize) -> bool) -> BlockPattern {
+        let mut pattern = BlockPattern {
             start: start.to_vec(),
             body: body_of_columns(start),
             near: Vec::with_capacity(lists.len()),
@@ -175,7 +180,12 @@ impl Pattern {
     }
 
     /// This rank's share of AᵀB over the rows that `chosen` selects.
-    pub fn product_here(&self, a: &Rows, b: &Rows, chosen: impl Fn(usize) -> bool) -> Csr {
+    pub fn product_here(
+        &self,
+        a: &KernelRows,
+        b: &KernelRows,
+        chosen: impl Fn(usize) -> bool,
+    ) -> Csr {
         let mut product = self.zeros();
         self.add_product(&mut product.val, (a, b), chosen, |_| true);
         product
@@ -185,7 +195,7 @@ impl Pattern {
     pub fn add_product(
         &self,
         val: &mut [f64],
-        (a, b): (&Rows, &Rows),
+        (a, b): (&KernelRows, &KernelRows),
         chosen: impl Fn(usize) -> bool,
         on: impl Fn(u32) -> bool,
     ) {

@@ -6,11 +6,11 @@ use super::candidates::rows_of_bodies;
 use super::columns::KernelColumns;
 use super::freedom::{grouped, FreeMotion};
 use super::gram::Gram;
-use super::numbers::Numbers;
+use super::gram_matrix::GramMatrix;
+use super::gram_pattern::{FactorSharing, GramPattern};
 use super::pattern::meeting;
+use super::rigid_motion::twists;
 use super::rounding::rounding_of_rows;
-use super::shape::{Shape, Sharing};
-use super::twist::twists;
 use crate::feti::jump::operator::Jump;
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
@@ -44,11 +44,11 @@ pub fn free_motions(
         .collect();
     let rows = rows_of_bodies(comm, problem, jump, (&columns, &kernels));
     let lists = meeting(comm, &rows, &rows, columns.start());
-    let shape = Shape::new(comm, &lists, columns.start(), &Sharing::any());
+    let shape = GramPattern::new(comm, &lists, columns.start(), &FactorSharing::any());
     let rows = rows.numbered(&shape.known);
     let candidates: Vec<bool> = (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect();
     let noise = rounding_of_rows(comm, problem, jump, (&rows, &shape));
-    let product = Numbers::default().renewed(comm, &shape, &rows, &candidates);
+    let product = GramMatrix::default().renewed(comm, &shape, &rows, &candidates);
     let motions = Gram::without(&shape, product, (&[], &noise)).unheld;
     // The first rank with a subdomain of a body speaks for it.
     let first = jump.subdomains.first().copied();

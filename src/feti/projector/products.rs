@@ -4,24 +4,24 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::known::Known;
-use super::pattern::Pattern;
-use super::rows::{RowEntry, Rows};
-use super::shape::Shape;
+use super::column_map::ColumnMap;
+use super::gram_pattern::GramPattern;
+use super::pattern::BlockPattern;
+use super::rows::{KernelRows, RowEntry};
 use base::linalg::csr::Csr;
-use cholesky::team::Team;
+use cholesky::team::FactorTeam;
 use parallel::exchange::{exchange_by_rank, gather_all, sum_all};
 
 /// Entries on their way to the ranks that have their rows.
-pub struct Outgoing<'a> {
-    team: &'a Team,
-    known: &'a Known,
+pub struct OutgoingEntries<'a> {
+    team: &'a FactorTeam,
+    known: &'a ColumnMap,
     entries: Vec<Vec<RowEntry>>,
 }
 
 /// An entry that another rank has sent.
 #[derive(Debug, Clone, Copy)]
-pub struct Sent {
+pub struct ReceivedEntry {
     /// Its place in the pattern.
     pub entry: usize,
     /// The sender.
@@ -30,11 +30,11 @@ pub struct Sent {
     pub value: f64,
 }
 
-impl<'a> Outgoing<'a> {
+impl<'a> OutgoingEntries<'a> {
     /// Nothing yet.
-    pub fn new(team: &'a Team, known: &'a Known) -> Outgoing<'a> {
+    pub fn new(team: &'a FactorTeam, known: &'a ColumnMap) -> OutgoingEntries<'a> {
         let entries = vec![Vec::new(); team.comm().size() as usize];
-        Outgoing {
+        OutgoingEntries {
             team,
             known,
             entries,
@@ -49,12 +49,12 @@ impl<'a> Outgoing<'a> {
     }
 
     /// Sends them; returns what others have sent to this rank, by increasing rank. Collective.
-    pub fn send(self, pattern: &Pattern) -> Vec<Sent> {
+    pub fn send(self, pattern: &BlockPattern) -> Vec<ReceivedEntry> {
         let mut sent = Vec::new();
         let number = |name: u32| self.known.number(name);
         let received = exchange_by_rank(self.team.comm(), self.entries);
         for (rank, entries) in received.iter().enumerate() {
-            sent.extend(entries.iter().map(|e| Sent {
+            sent.extend(entries.iter().map(|e| ReceivedEntry {
                 entry: pattern.entry(number(e.row), number(e.col)),
                 rank,
                 value: e.value,
@@ -64,9 +64,9 @@ impl<'a> Outgoing<'a> {
     }
 }
 
-impl Shape {
+impl GramPattern {
     /// The ranks that share factors, if all of them share one: a rank then has some rows of the matrix.
-    fn shared(&self) -> Option<&Team> {
+    fn shared(&self) -> Option<&FactorTeam> {
         let team = self.team().map(|team| &**team);
         team.filter(|team| team.is_shared())
     }
@@ -76,8 +76,8 @@ impl Shape {
     pub fn product(
         &self,
         comm: &SimpleCommunicator,
-        a: &Rows,
-        b: &Rows,
+        a: &KernelRows,
+        b: &KernelRows,
         chosen: impl Fn(usize) -> bool,
     ) -> Csr {
         let mut product = self.pattern.product_here(a, b, chosen);
@@ -85,7 +85,7 @@ impl Shape {
             sum_all(comm, &mut product.val);
             return product;
         };
-        let mut outgoing = Outgoing::new(team, &self.known);
+        let mut outgoing = OutgoingEntries::new(team, &self.known);
         for (row, span) in self.pattern.entries().filter(|(row, _)| !team.has(*row)) {
             for k in span.filter(|&k| product.val[k] != 0.0) {
                 outgoing.add(row, product.col[k], product.val[k]);
@@ -98,7 +98,12 @@ impl Shape {
     }
 
     /// AᵀB, which rounding makes unsymmetric, and its transpose, likewise. Collective.
-    pub fn product_and_transpose(&self, comm: &SimpleCommunicator, a: &Rows, b: &Rows) -> [Csr; 2] {
+    pub fn product_and_transpose(
+        &self,
+        comm: &SimpleCommunicator,
+        a: &KernelRows,
+        b: &KernelRows,
+    ) -> [Csr; 2] {
         let Some(team) = self.shared() else {
             let product = self.product(comm, a, b, |_| true);
             let transpose = transposed(&product);
@@ -106,7 +111,7 @@ impl Shape {
         };
         let mut product = self.pattern.product_here(a, b, |_| true);
         let mut transpose = self.pattern.zeros();
-        let mut outgoing = [(); 2].map(|()| Outgoing::new(team, &self.known));
+        let mut outgoing = [(); 2].map(|()| OutgoingEntries::new(team, &self.known));
         for (row, span) in self.pattern.entries() {
             let own = team.has(row);
             for k in span.filter(|&k| product.val[k] != 0.0) {

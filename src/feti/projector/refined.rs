@@ -6,12 +6,12 @@
 
 use std::rc::Rc;
 
+use super::column_map::ColumnMap;
 use super::gram::{diagonal_of_own_rows, Gram};
-use super::gtg::Side;
-use super::known::Known;
-use super::shape::Shape;
+use super::gram_pattern::GramPattern;
+use super::gtg::InverseSide;
 use base::linalg::csr::Csr;
-use cholesky::team::Team;
+use cholesky::team::FactorTeam;
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU
 /// factorisation.
@@ -26,11 +26,11 @@ pub fn probe(i: usize) -> f64 {
 }
 
 /// A matrix A, and a factor of it or of its symmetric part. A rank has the rows that it has in the factor.
-pub struct Refined {
+pub struct RefinedFactor {
     factor: Gram,
     /// The ranks that share them; `None` if this rank has all.
-    team: Option<Rc<Team>>,
-    known: Rc<Known>,
+    team: Option<Rc<FactorTeam>>,
+    known: Rc<ColumnMap>,
     matrix: Csr,
     /// Aᵀ, if A is not symmetric and steps are needed.
     transpose: Option<Csr>,
@@ -40,30 +40,39 @@ pub struct Refined {
     pub defect: f64,
 }
 
-impl Refined {
+impl RefinedFactor {
     /// Factors A = GᵀQG, which has the pattern of `shape` and is given with its transpose; `plain` says what the rows
     /// hold. Gives A back if the factor is not as good as one with pivots would be, or columns are few. Collective.
-    pub fn weighted(shape: &Shape, [a, transpose]: [Csr; 2], plain: &Gram) -> Result<Refined, Csr> {
+    pub fn weighted(
+        shape: &GramPattern,
+        [a, transpose]: [Csr; 2],
+        plain: &Gram,
+    ) -> Result<RefinedFactor, Csr> {
         let mut symmetric = a.clone();
         let both = symmetric.val.iter_mut().zip(&transpose.val);
         both.for_each(|(s, t)| *s = 0.5 * (*s + t));
         let Some(factor) = Gram::weighted(shape, symmetric, plain) else {
             return Err(a);
         };
-        match Refined::of(shape, factor, a, Some(transpose)) {
+        match RefinedFactor::of(shape, factor, a, Some(transpose)) {
             (refined, true) => Ok(refined),
             (refined, false) => Err(refined.matrix),
         }
     }
 
     /// With the factor of a symmetric matrix of this shape. Collective.
-    pub fn symmetric(shape: &Shape, factor: Gram, matrix: Csr) -> Refined {
-        Refined::of(shape, factor, matrix, None).0
+    pub fn symmetric(shape: &GramPattern, factor: Gram, matrix: Csr) -> RefinedFactor {
+        RefinedFactor::of(shape, factor, matrix, None).0
     }
 
     /// With as many steps as are needed, and whether so many do.
-    fn of(shape: &Shape, factor: Gram, matrix: Csr, transpose: Option<Csr>) -> (Refined, bool) {
-        let mut refined = Refined {
+    fn of(
+        shape: &GramPattern,
+        factor: Gram,
+        matrix: Csr,
+        transpose: Option<Csr>,
+    ) -> (RefinedFactor, bool) {
+        let mut refined = RefinedFactor {
             factor,
             team: shape.team().cloned(),
             known: shape.known.clone(),
@@ -108,8 +117,8 @@ impl Refined {
         for steps in 0..=STEPS {
             self.steps = steps;
             let mut y = b.clone();
-            self.solve(&mut y, Side::Plain);
-            let rest = self.rest(&y, &b, Side::Plain);
+            self.solve(&mut y, InverseSide::Plain);
+            let rest = self.rest(&y, &b, InverseSide::Plain);
             let error: Vec<f64> = y.iter().zip(&x).map(|(y, x)| y - x).collect();
             self.defect = scaled(&error, 1) / scaled(&x, 1);
             // What is not a number is no small residual.
@@ -152,9 +161,9 @@ impl Refined {
     }
 
     /// b − A x, or b − Aᵀ x. Collective.
-    fn rest(&self, x: &[f64], b: &[f64], side: Side) -> Vec<f64> {
+    fn rest(&self, x: &[f64], b: &[f64], side: InverseSide) -> Vec<f64> {
         let a = match (side, &self.transpose) {
-            (Side::Transposed, Some(transpose)) => transpose,
+            (InverseSide::Transposed, Some(transpose)) => transpose,
             _ => &self.matrix,
         };
         let mut rest = self.product(a, x);
@@ -164,7 +173,7 @@ impl Refined {
     }
 
     /// x ← A⁻¹ x or A⁻ᵀ x, zero in the columns that are left out. Collective.
-    pub fn solve(&self, x: &mut [f64], side: Side) {
+    pub fn solve(&self, x: &mut [f64], side: InverseSide) {
         let b = x.to_vec();
         self.factor.solve(x);
         for _ in 0..self.steps {

@@ -2,8 +2,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::rows::Rows;
-use super::shape::Shape;
+use super::gram_pattern::GramPattern;
+use super::rows::KernelRows;
 use crate::feti::jump::operator::Jump;
 use crate::substructures::Problem;
 use base::linalg::sorted::distinct;
@@ -15,7 +15,7 @@ pub(super) fn rounding_of_rows(
     comm: &SimpleCommunicator,
     problem: &Problem,
     jump: &Jump,
-    (all, shape): (&Rows, &Shape),
+    (all, shape): (&KernelRows, &GramPattern),
 ) -> Vec<f64> {
     if !any(comm, problem.rows.iter().any(|row| row.rounding > 0.0)) {
         return Vec::new();

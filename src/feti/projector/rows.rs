@@ -6,7 +6,7 @@ use mpi::topology::SimpleCommunicator;
 use rustc_hash::FxHashMap;
 
 use super::by_column::ByColumn;
-use super::known::Known;
+use super::column_map::ColumnMap;
 use base::linalg::csr::Csr;
 use base::linalg::dense::{dot, Dense};
 use base::linalg::semidefinite::Semidefinite;
@@ -30,23 +30,23 @@ pub struct RowEntry {
 }
 
 /// Rows of a matrix with r columns, on the rank that owns them. Columns have their names or their numbers
-/// ([`known`](super::known)).
+/// ([`column_map`](super::column_map)).
 ///
 /// Rows with the same columns, such as those of a face between two bodies, are a group. Products go through them group
 /// by group: a group reads its columns once, and a row takes the memory of its values and hardly more.
 #[derive(Debug, Clone, Default)]
-pub struct Rows {
-    layout: Rc<Layout>,
+pub struct KernelRows {
+    layout: Rc<RowLayout>,
     /// The values of the rows, group after group.
     values: Vec<f64>,
 }
 
 /// Where the entries are; matrices that differ in their values share it.
 #[derive(Debug, Default)]
-struct Layout {
+struct RowLayout {
     /// Where the values of each row begin, and its group.
     row: Vec<(usize, u32)>,
-    groups: Vec<Group>,
+    groups: Vec<RowGroup>,
     /// The columns of all groups, those of each increasing.
     columns: Vec<u32>,
     /// The rows, group after group.
@@ -55,16 +55,16 @@ struct Layout {
 
 /// Rows with the same columns: where they begin in the lists.
 #[derive(Debug, Clone, Copy, Default)]
-struct Group {
+struct RowGroup {
     columns: usize,
     rows: usize,
     values: usize,
 }
 
-impl Rows {
+impl KernelRows {
     /// From (row, column, value) entries, repeated ones added up.
-    pub fn from_triplets(n: usize, entries: Vec<(u32, u32, f64)>) -> Rows {
-        Rows::of_matrix(Csr::from_triplets(n, &entries))
+    pub fn from_triplets(n: usize, entries: Vec<(u32, u32, f64)>) -> KernelRows {
+        KernelRows::of_matrix(Csr::from_triplets(n, &entries))
     }
 
     /// Rows from (row, column, value) entries, repeated ones added up, without entries below `part` of the largest in
@@ -76,7 +76,7 @@ impl Rows {
         entries: &[(u32, u32, f64)],
         scale: &[f64],
         part: f64,
-    ) -> Rows {
+    ) -> KernelRows {
         let mut all = Csr::from_triplets(n, entries);
         let sizes = entries.iter().map(|&(i, c, v)| (i, c, v.abs()));
         let sizes = Csr::from_triplets(n, &sizes.collect::<Vec<_>>());
@@ -97,10 +97,10 @@ impl Rows {
                 }
             }
         }
-        Rows::of_matrix(all)
+        KernelRows::of_matrix(all)
     }
 
-    fn of_matrix(matrix: Csr) -> Rows {
+    fn of_matrix(matrix: Csr) -> KernelRows {
         let n = matrix.n();
         let Csr {
             row_ptr: start,
@@ -109,7 +109,7 @@ impl Rows {
         } = matrix.without_zeros();
         let columns_of = |i: usize| &col[start[i]..start[i + 1]];
         // Groups are numbered in the order in which they come.
-        let mut layout = Layout::default();
+        let mut layout = RowLayout::default();
         let mut number: FxHashMap<&[u32], u32> = FxHashMap::default();
         let mut sizes: Vec<usize> = Vec::new();
         for i in 0..n {
@@ -117,9 +117,9 @@ impl Rows {
             let group = *number.entry(columns).or_insert_with(|| {
                 let begin = layout.columns.len();
                 layout.columns.extend_from_slice(columns);
-                layout.groups.push(Group {
+                layout.groups.push(RowGroup {
                     columns: begin,
-                    ..Group::default()
+                    ..RowGroup::default()
                 });
                 sizes.push(0);
                 sizes.len() as u32 - 1
@@ -128,9 +128,9 @@ impl Rows {
             layout.row.push((0, group));
         }
         let (mut before, mut values) = (0, 0);
-        layout.groups.push(Group {
+        layout.groups.push(RowGroup {
             columns: layout.columns.len(),
-            ..Group::default()
+            ..RowGroup::default()
         });
         for g in 0..layout.groups.len() {
             (layout.groups[g].rows, layout.groups[g].values) = (before, values);
@@ -152,32 +152,32 @@ impl Rows {
             next.rows += 1;
             next.values += from.len();
         }
-        Rows {
+        KernelRows {
             layout: layout.into(),
             values,
         }
     }
 
     /// These rows with the numbers that columns have here in the place of their names.
-    pub fn numbered(&self, known: &Known) -> Rows {
+    pub fn numbered(&self, known: &ColumnMap) -> KernelRows {
         self.renamed(|name| known.number(name))
     }
 
     /// These rows with the names of columns in the place of their numbers.
-    pub fn named(&self, known: &Known) -> Rows {
+    pub fn named(&self, known: &ColumnMap) -> KernelRows {
         self.renamed(|column| known.name(column))
     }
 
     /// These rows with other numbers for the columns, in the same order.
-    fn renamed(&self, name: impl Fn(u32) -> u32) -> Rows {
+    fn renamed(&self, name: impl Fn(u32) -> u32) -> KernelRows {
         let old = &*self.layout;
-        let layout = Layout {
+        let layout = RowLayout {
             row: old.row.clone(),
             groups: old.groups.clone(),
             columns: old.columns.iter().map(|&c| name(c)).collect(),
             order: old.order.clone(),
         };
-        Rows {
+        KernelRows {
             layout: layout.into(),
             values: self.values.clone(),
         }
@@ -212,7 +212,7 @@ impl Rows {
     pub fn product(
         &self,
         comm: &SimpleCommunicator,
-        b: &Rows,
+        b: &KernelRows,
         r: usize,
         chosen: impl Fn(usize) -> bool,
     ) -> Dense {
@@ -246,7 +246,7 @@ impl Rows {
     /// Rows that have the same columns, in these rows and in those of `other`: their numbers, and both sets of columns.
     pub fn alike<'a>(
         &'a self,
-        other: &'a Rows,
+        other: &'a KernelRows,
     ) -> impl Iterator<Item = (&'a [u32], [&'a [u32]; 2])> {
         let group = |&i: &u32| other.layout.row[i as usize].1;
         self.groups().flat_map(move |(rows, columns, _)| {
@@ -295,7 +295,7 @@ impl Rows {
         motions: &ByColumn,
         largest: &[f64],
         rounding: impl Fn(u32) -> f64,
-    ) -> Rows {
+    ) -> KernelRows {
         for i in 0..self.n() {
             let (at, group) = self.layout.row[i];
             let columns = self.layout.columns_of(group as usize);
@@ -352,7 +352,7 @@ impl Rows {
     }
 }
 
-impl Layout {
+impl RowLayout {
     fn columns_of(&self, group: usize) -> &[u32] {
         &self.columns[self.groups[group].columns..self.groups[group + 1].columns]
     }

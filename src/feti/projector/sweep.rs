@@ -2,13 +2,13 @@
 //! overlap share a product.
 
 use super::graph::BodyGraph;
-use super::rows::Rows;
+use super::rows::KernelRows;
 use crate::Result;
 use petsc::Vec as PetscVec;
 
 /// This rank's entries of a column of multipliers.
 #[derive(Debug, Clone, Default)]
-pub struct Column {
+pub struct MultiplierColumn {
     /// (owned row, value), by increasing row.
     pub entries: Vec<(u32, f64)>,
     /// Bodies that the column's rows touch: the operator reaches the rows of these bodies. The same on every rank.
@@ -16,7 +16,7 @@ pub struct Column {
 }
 
 /// Sets of columns that can share a product.
-fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
+fn groups(graph: &BodyGraph, columns: &[MultiplierColumn]) -> Vec<Vec<usize>> {
     // For each group, the bodies that its columns reach, and their neighbours.
     let mut taken: Vec<Vec<bool>> = Vec::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -43,16 +43,16 @@ const TOGETHER: usize = 8;
 pub fn images(
     like: &PetscVec,
     graph: &BodyGraph,
-    columns: &[Column],
+    columns: &[MultiplierColumn],
     mut apply: impl FnMut(&[PetscVec], &[PetscVec]) -> Result<()>,
-) -> Result<Vec<Column>> {
+) -> Result<Vec<MultiplierColumn>> {
     let groups = groups(graph, columns);
     let vectors = || {
         let n = groups.len().min(TOGETHER);
         (0..n).map(|_| like.duplicate()).collect::<Result<Vec<_>>>()
     };
     let (xs, ys) = (vectors()?, vectors()?);
-    let mut out: Vec<Column> = vec![Column::default(); columns.len()];
+    let mut out: Vec<MultiplierColumn> = vec![MultiplierColumn::default(); columns.len()];
     const NONE: u32 = u32::MAX;
     let mut owner = vec![NONE; graph.n];
     for batch in groups.chunks(TOGETHER) {
@@ -87,11 +87,11 @@ pub fn images(
 
 /// The columns of G or Q G, which are given by rows. `reach` has, for each body, the bodies that it touches.
 pub fn kernel_columns(
-    rows: &Rows,
+    rows: &KernelRows,
     start: &[usize],
     reach: impl Fn(usize) -> Vec<u32>,
-) -> Vec<Column> {
-    let mut columns = vec![Column::default(); *start.last().unwrap_or(&0)];
+) -> Vec<MultiplierColumn> {
+    let mut columns = vec![MultiplierColumn::default(); *start.last().unwrap_or(&0)];
     for body in 0..start.len().saturating_sub(1) {
         for column in &mut columns[start[body]..start[body + 1]] {
             column.reach = reach(body);

@@ -4,7 +4,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::gram::FEW;
 use super::natural::NaturalCoarse;
-use super::rows::Rows;
+use super::rows::KernelRows;
 use super::sweep;
 use crate::feti::cost::variation::JUMPS;
 use crate::feti::operators::preconditioner::Preconditioner;
@@ -130,7 +130,7 @@ impl NaturalCoarse {
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         rigid: &[f64],
-    ) -> Result<Rows> {
+    ) -> Result<KernelRows> {
         let n = stiffness.jump.n_owned;
         let graph = self.graph(problem, stiffness);
         let columns =
@@ -142,7 +142,7 @@ impl NaturalCoarse {
             let global = |row: u32| row as usize >= stiffness.jump.n_owned_local;
             column.entries.retain(|e| global(e.0));
         }
-        let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
+        let of = |list: &[sweep::MultiplierColumn], weigh: &dyn Fn(u32) -> f64| {
             let entries = list.iter().enumerate().flat_map(|(c, column)| {
                 let entries = column.entries.iter();
                 entries.map(move |&(row, v)| (row, c as u32, v * weigh(row)))
@@ -151,6 +151,6 @@ impl NaturalCoarse {
         };
         let mut entries = of(&images, &|_| 1.0);
         entries.extend(of(&columns, &|row| rigid[row as usize]));
-        Ok(Rows::from_triplets(n, entries))
+        Ok(KernelRows::from_triplets(n, entries))
     }
 }

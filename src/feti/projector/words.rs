@@ -1,6 +1,6 @@
 //! Rigid motions in words: slides along x, turns about z through (0.5, 0.2, 0).
 
-use super::twist::Twist;
+use super::rigid_motion::RigidMotion;
 use base::linalg::vec3::{cross, dot, minus, norm};
 
 /// Parts of a motion below this, relative to the others, are not worth a word.
@@ -8,7 +8,7 @@ const SMALL: f64 = 1e-6;
 
 /// The motions of one body, or of several that move as one, in words without a subject, such as "slides along x and
 /// turns about z through (0.5, 0.2, 0)"; `many` has the plural. Motions may come in any basis.
-pub fn in_words(twists: &[Twist], many: bool) -> String {
+pub fn in_words(twists: &[RigidMotion], many: bool) -> String {
     let Some(first) = twists.first() else {
         return String::new();
     };
@@ -30,7 +30,7 @@ pub fn in_words(twists: &[Twist], many: bool) -> String {
 }
 
 /// Whether bodies have the same motion: what they do at the same points is the same.
-pub fn as_one(twists: &[Twist]) -> bool {
+pub fn as_one(twists: &[RigidMotion]) -> bool {
     let Some((first, rest)) = twists.split_first() else {
         return false;
     };
@@ -43,7 +43,7 @@ pub fn as_one(twists: &[Twist]) -> bool {
 }
 
 /// A basis of the same motions: slides, and turns that have no part along these slides where that is possible.
-fn separated(twists: &[Twist]) -> [Vec<Twist>; 2] {
+fn separated(twists: &[RigidMotion]) -> [Vec<RigidMotion>; 2] {
     let first = twists[0];
     let (centre, radius) = (first.centre, first.radius.max(f64::MIN_POSITIVE));
     // Rotation times radius, then translation of the same centre.
@@ -74,7 +74,7 @@ fn separated(twists: &[Twist]) -> [Vec<Twist>; 2] {
         let length = norm(v);
         across.push(v.map(|x| x / length));
     }
-    let twist = |row: &[f64; 6]| Twist {
+    let twist = |row: &[f64; 6]| RigidMotion {
         translation: [row[3], row[4], row[5]],
         rotation: [row[0], row[1], row[2]].map(|w| w / radius),
         ..first
@@ -117,7 +117,7 @@ fn reduced(mut rows: Vec<[f64; 6]>) -> Vec<[f64; 6]> {
 }
 
 /// A turn, with what it slides along its axis.
-fn turn(t: &Twist, s: &str) -> String {
+fn turn(t: &RigidMotion, s: &str) -> String {
     let angle = norm(t.rotation);
     let axis = t.rotation.map(|w| w / angle);
     let along = dot(t.translation, axis) / angle;

@@ -98,7 +98,7 @@ fn has_whole_nodes(jump: &Jump, j: usize, components: usize) -> bool {
 fn hash(problem: &Problem, jump: &Jump, j: usize) -> Option<u64> {
     let c = components(problem, j)?;
     let k = &problem.local[j].k;
-    let blocks = Blocks::new(k, c);
+    let blocks = NodeBlocks::new(k, c);
     let scale = blocks.trace(0);
     if !has_whole_nodes(jump, j, c) || scale <= 0.0 || scale.is_nan() {
         return None;
@@ -158,10 +158,13 @@ fn turned(
 
 /// φ with B = φ R A Rᵀ, if there is one. Both matrices have the same pattern.
 fn factor(a: &Csr, b: &Csr, components: usize, q: &Matrix) -> Option<f64> {
-    let (a, b) = (Blocks::new(a, components), Blocks::new(b, components));
+    let (a, b) = (
+        NodeBlocks::new(a, components),
+        NodeBlocks::new(b, components),
+    );
     let nodes = a.nodes();
     let traces: Vec<f64> = (0..nodes).map(|n| a.trace(n)).collect();
-    let sum = |m: &Blocks| (0..nodes).map(|n| m.trace(n)).sum::<f64>();
+    let sum = |m: &NodeBlocks| (0..nodes).map(|n| m.trace(n)).sum::<f64>();
     let ratio = sum(&b) / sum(&a);
     if !(ratio.is_finite() && ratio > 0.0) || traces.iter().any(|t| *t <= 0.0 || t.is_nan()) {
         return None;
@@ -197,14 +200,14 @@ fn factor(a: &Csr, b: &Csr, components: usize, q: &Matrix) -> Option<f64> {
 }
 
 /// A matrix by blocks: a row and a column for each node.
-struct Blocks<'a> {
+struct NodeBlocks<'a> {
     k: &'a Csr,
     components: usize,
 }
 
-impl<'a> Blocks<'a> {
-    fn new(k: &'a Csr, components: usize) -> Blocks<'a> {
-        Blocks { k, components }
+impl<'a> NodeBlocks<'a> {
+    fn new(k: &'a Csr, components: usize) -> NodeBlocks<'a> {
+        NodeBlocks { k, components }
     }
 
     fn nodes(&self) -> usize {

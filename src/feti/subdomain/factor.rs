@@ -6,11 +6,11 @@ use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::equal::Likeness;
-use super::kept::Still;
 use super::problem::LocalProblem;
-use super::scaled::Scaled;
+use super::retained::Still;
+use super::scaled::ScaledSubdomain;
 use super::which::OperatorForm;
-use crate::feti::cost::forms::{self, Kind};
+use crate::feti::cost::forms::{self, SubdomainKind};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{Adaptive, MethodSettings, PcType, Scaling};
 use crate::feti::subdomain::equal;
@@ -24,7 +24,7 @@ use petsc::Session;
 
 /// The local subdomains, factored.
 pub(crate) struct Factored {
-    pub locals: Vec<Scaled>,
+    pub locals: Vec<ScaledSubdomain>,
     /// The analysis of each one's pattern, if the settings want it or it was there already.
     pub analysed: Vec<Option<Arc<Analysed>>>,
 }
@@ -101,7 +101,7 @@ pub(crate) fn factor(
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     // Copies that are turned alike have Ψ in common.
-    let mut turned: Vec<(usize, Scaled)> = Vec::new();
+    let mut turned: Vec<(usize, ScaledSubdomain)> = Vec::new();
     let of = |(j, like): (usize, &Likeness)| {
         if let Some(known) = known(j) {
             return Ok(known.clone());
@@ -109,21 +109,23 @@ pub(crate) fn factor(
         let k = place(like.first);
         let problem = factored[k].as_ref().expect("a kind that is needed");
         let Some(turn) = like.turn else {
-            return Ok(Scaled::new(problem.clone(), like.factor));
+            return Ok(ScaledSubdomain::new(problem.clone(), like.factor));
         };
         // Free dofs of the interior that joined Γ tear nodes apart.
         if problem.gamma.n_gamma() > kinds[k].delta.len() + kinds[k].primal.len() {
-            return Ok(Scaled::new(make(k, j)?, 1.0));
+            return Ok(ScaledSubdomain::new(make(k, j)?, 1.0));
         }
-        let same = |(first, s): &&(usize, Scaled)| *first == like.first && s.turn() == Some(&turn);
+        let same = |(first, s): &&(usize, ScaledSubdomain)| {
+            *first == like.first && s.turn() == Some(&turn)
+        };
         if let Some((_, known)) = turned.iter().find(same) {
             return Ok(known.with_factor(like.factor));
         }
-        let new = Scaled::turned(problem.clone(), like.factor, turn);
+        let new = ScaledSubdomain::turned(problem.clone(), like.factor, turn);
         turned.push((like.first, new.clone()));
         Ok(new)
     };
-    let locals: Result<Vec<Scaled>> = first.iter().enumerate().map(of).collect();
+    let locals: Result<Vec<ScaledSubdomain>> = first.iter().enumerate().map(of).collect();
     let pattern = |(j, like): (usize, &Likeness)| {
         if known(j).is_some() {
             return found(j);
@@ -141,7 +143,7 @@ pub(crate) fn factor(
 /// A pattern of a single kind is analysed during its factorisation; its analysis is dropped then, unless it is to be
 /// kept (`keeps`).
 fn analyses(
-    kinds: &[Kind],
+    kinds: &[SubdomainKind],
     (forms, needed): (&[OperatorForm], &[bool]),
     (found, keeps): (&dyn Fn(usize) -> Option<Arc<Analysed>>, bool),
     team: &Team,
@@ -189,14 +191,14 @@ fn analyses(
     out
 }
 
-fn pattern_hash(kind: &Kind) -> u64 {
+fn pattern_hash(kind: &SubdomainKind) -> u64 {
     let mut state = DefaultHasher::new();
     let k = &kind.sub.k;
     (k.n(), k.nnz(), kind.delta, kind.primal).hash(&mut state);
     state.finish()
 }
 
-fn same_pattern(a: &Kind, b: &Kind) -> bool {
+fn same_pattern(a: &SubdomainKind, b: &SubdomainKind) -> bool {
     let (k, l) = (&a.sub.k, &b.sub.k);
     (a.delta, a.primal) == (b.delta, b.primal) && k.row_ptr == l.row_ptr && k.col == l.col
 }

@@ -5,7 +5,7 @@ use super::problem::{Inside, LocalProblem};
 impl LocalProblem {
     /// Condenses loads, at most [`LANES`](cholesky::lanes::LANES). Returns (work, g) for each with g = f_Γ −
     /// K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
-    /// [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
+    /// [`ScaledSubdomain::recover_many`](super::scaled::ScaledSubdomain::recover_many).
     pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
         let factor = match &self.inside {
             Inside::Partial(factor) => factor,

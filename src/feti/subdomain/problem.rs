@@ -14,7 +14,8 @@
 //! nodal dofs.
 //!
 //! S and T are dense matrices or sparse solves, as the caller chooses ([`OperatorForm`]). This type belongs to one
-//! matrix; subdomains with multiples of the matrix share it through [`Scaled`](super::scaled::Scaled).
+//! matrix; subdomains with multiples of the matrix share it through
+//! [`ScaledSubdomain`](super::scaled::ScaledSubdomain).
 
 #[cfg(test)]
 #[path = "../../../tests/inside/feti/subdomain/problem.rs"]
@@ -30,7 +31,7 @@ use super::which::OperatorForm;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use base::linalg::symmetric::Symmetric;
-use cholesky::interior::{Condenser, Factor, NoFactor};
+use cholesky::interior::{Condenser, InteriorFactor, NoFactor};
 use cholesky::symbolic::Keep;
 
 /// Largest number of free motions that are searched in a subdomain that touches nothing: twice the rigid motions of a
@@ -92,7 +93,7 @@ pub(crate) struct Packed {
 #[derive(Debug)]
 pub(crate) enum Inside {
     /// The factor that S came from.
-    Partial(Arc<Factor>),
+    Partial(Arc<InteriorFactor>),
     Implicit(Box<Implicit>),
 }
 

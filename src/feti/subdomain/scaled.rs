@@ -21,7 +21,7 @@ use base::linalg::dense::Dense;
 
 /// One subdomain of this rank.
 #[derive(Debug, Clone)]
-pub struct Scaled {
+pub struct ScaledSubdomain {
     problem: Arc<LocalProblem>,
     /// φ.
     pub factor: f64,
@@ -35,10 +35,10 @@ struct Turned {
     gamma: Gamma,
 }
 
-impl Scaled {
+impl ScaledSubdomain {
     /// The subdomain with `factor` times the matrix of `problem`.
-    pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Scaled {
-        Scaled {
+    pub fn new(problem: Arc<LocalProblem>, factor: f64) -> ScaledSubdomain {
+        ScaledSubdomain {
             problem,
             factor,
             turned: None,
@@ -47,9 +47,9 @@ impl Scaled {
 
     /// The subdomain with `factor` times R K₀ Rᵀ, K₀ the matrix of `problem`. The interface of `problem` must have all
     /// components of its nodes side by side.
-    pub fn turned(problem: Arc<LocalProblem>, factor: f64, turn: Turn) -> Scaled {
+    pub fn turned(problem: Arc<LocalProblem>, factor: f64, turn: Turn) -> ScaledSubdomain {
         let gamma = turn.of_gamma(&problem.gamma);
-        Scaled {
+        ScaledSubdomain {
             problem,
             factor,
             turned: Some(Arc::new(Turned { turn, gamma })),
@@ -57,8 +57,8 @@ impl Scaled {
     }
 
     /// Another subdomain with the same operators up to `factor`.
-    pub fn with_factor(&self, factor: f64) -> Scaled {
-        Scaled {
+    pub fn with_factor(&self, factor: f64) -> ScaledSubdomain {
+        ScaledSubdomain {
             factor,
             ..self.clone()
         }
@@ -226,14 +226,17 @@ impl Scaled {
 
     /// Condenses loads of subdomains that share their operators, as [`LocalProblem::condense_many`] does: the part for
     /// [`recover_many`](Self::recover_many), and g on Γ.
-    pub fn condense_many(members: &[&Scaled], loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
+    pub fn condense_many(
+        members: &[&ScaledSubdomain],
+        loads: &[&[f64]],
+    ) -> Vec<(Vec<f64>, Vec<f64>)> {
         let Some(first) = members.first() else {
             return Vec::new();
         };
         if members.iter().all(|m| m.turned.is_none()) {
             return first.problem.condense_many(loads);
         }
-        let back = |(member, load): (&&Scaled, &&[f64])| {
+        let back = |(member, load): (&&ScaledSubdomain, &&[f64])| {
             let mut load = load.to_vec();
             member.turn_back(&mut load);
             load
@@ -249,7 +252,7 @@ impl Scaled {
 
     /// Solutions of subdomains that share their operators, at most [`LANES`](cholesky::lanes::LANES). Each part
     /// has the result of [`condense_many`](Self::condense_many) and the values on Γ.
-    pub fn recover_many(members: &[&Scaled], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
+    pub fn recover_many(members: &[&ScaledSubdomain], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
         let Some(first) = members.first() else {
             return Vec::new();
         };
@@ -257,7 +260,7 @@ impl Scaled {
         if members.iter().all(|m| m.turned.is_none()) {
             return first.problem.recover_many(parts, &scales);
         }
-        let back = |(member, part): (&&Scaled, &(&[f64], &[f64]))| {
+        let back = |(member, part): (&&ScaledSubdomain, &(&[f64], &[f64]))| {
             let mut on_gamma = part.1.to_vec();
             member.turn_back(&mut on_gamma);
             on_gamma

@@ -16,7 +16,7 @@ pub struct Turn {
 }
 
 /// The places of one vector, by component; in the plane the third does not count.
-type Places = [usize; 3];
+type VectorComponents = [usize; 3];
 
 impl Turn {
     /// R with `q` at every node.
@@ -59,7 +59,7 @@ impl Turn {
     pub fn congruence(&self, a: &mut Dense) {
         let c = self.components;
         let nodes = (0..a.cols / c).map(|k| [c * k, c * k + 1, c * k + 2]);
-        let nodes: Vec<Places> = nodes.collect();
+        let nodes: Vec<VectorComponents> = nodes.collect();
         (0..a.cols).for_each(|j| self.forth(a.col_mut(j)));
         self.columns(a, &nodes);
     }
@@ -89,7 +89,7 @@ impl Turn {
     }
 
     /// A ← A R_Pᵀ, where R_P turns the columns at these places.
-    fn columns(&self, a: &mut Dense, places: &[Places]) {
+    fn columns(&self, a: &mut Dense, places: &[VectorComponents]) {
         let c = self.components;
         for at in places {
             for row in 0..a.rows {
@@ -103,7 +103,7 @@ impl Turn {
     }
 
     /// The places of the vertices and averages among the primal dofs.
-    fn primal(&self, gamma: &Gamma) -> Vec<Places> {
+    fn primal(&self, gamma: &Gamma) -> Vec<VectorComponents> {
         let (c, n, averages) = (self.components, gamma.n_vertices(), gamma.basis.len());
         let each = averages / c;
         let vertices = (0..n / c).map(|k| [c * k, c * k + 1, c * k + 2]);

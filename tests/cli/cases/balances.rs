@@ -3,7 +3,7 @@
 use crate::support::checks::number;
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use deck::{read_dat, Quantity};
+use deck::{read_dat, DatQuantity};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
@@ -83,7 +83,9 @@ fn reactions_in_turned_systems_count() {
         all_balance(&report, 1e-6, 0);
         let dat = dir.path("out/10_balance_of_inclined_support.dat");
         let tables = read_dat(&fs::read_to_string(dat).expect("tables"));
-        let forces = tables.iter().find(|t| t.quantity == Quantity::TotalForce);
+        let forces = tables
+            .iter()
+            .find(|t| t.quantity == DatQuantity::TotalForce);
         let total = forces.expect("forces").rows[0].vector;
         near(&force(&low["reaction"]), &total, 1e-5);
     }

@@ -2,7 +2,7 @@
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
-use deck::{read_dat, Quantity};
+use deck::{read_dat, DatQuantity};
 use std::collections::BTreeMap;
 
 /// A block of hexahedra between `origin` and `origin + size`; z grows by `slope` times x. Its nodes and cells are
@@ -176,7 +176,7 @@ pub fn solve(name: &str, text: &str, ranks: usize) -> Ran {
     let run = run_fetifeti(ranks, &args);
     let printed = std::fs::read_to_string(format!("{out}/deck.dat")).unwrap_or_default();
     let tables = read_dat(&printed).into_iter();
-    let mut moves = tables.filter(|table| table.quantity == Quantity::Displacement);
+    let mut moves = tables.filter(|table| table.quantity == DatQuantity::Displacement);
     let rows = moves.next_back().into_iter().flat_map(|table| table.rows);
     Ran {
         code: run.code,

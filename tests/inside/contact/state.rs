@@ -1,10 +1,10 @@
 //! Unit tests of `src/contact/state.rs`.
 
-use super::Progress;
+use super::ActiveSetProgress;
 
 #[test]
 fn progress_is_a_new_smallest_number() {
-    let mut progress = Progress::default();
+    let mut progress = ActiveSetProgress::default();
     assert!(!progress.stalled(1));
     for (wrong, stalled) in [
         (9, false),
@@ -22,7 +22,7 @@ fn progress_is_a_new_smallest_number() {
 
 #[test]
 fn progress_begins_anew() {
-    let mut progress = Progress::default();
+    let mut progress = ActiveSetProgress::default();
     [1, 19].into_iter().for_each(|wrong| progress.note(wrong));
     assert!(progress.stalled(1));
     progress.begin(19);

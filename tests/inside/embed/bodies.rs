@@ -48,13 +48,13 @@ fn what_does_not_hold_makes_no_body() {
 #[test]
 fn all_are_named_or_none() {
     let groups = |named: &[Option<u64>]| {
-        let part = |&body: &Option<u64>| Part {
+        let part = |&body: &Option<u64>| TornSubdomain {
             body,
             k: Csr::default(),
             dofs: Vec::new(),
             known: Vec::new(),
         };
-        let parts: Vec<Part> = named.iter().map(part).collect();
+        let parts: Vec<TornSubdomain> = named.iter().map(part).collect();
         with_session(move |session| {
             named_groups(session, 5, &parts).map_err(|error| error.to_string())
         })

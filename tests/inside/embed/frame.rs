@@ -49,13 +49,13 @@ fn symmetry_is_seen_in_patterns_of_any_shape() {
 fn entries_find_their_places() {
     // Dofs 3, 5, 7, 9: 7 is known, 9 has no stiffness here; the host lists them in another order, 5 twice.
     let k = csr(&[&[4.0, -1.0], &[-1.0, 4.0]]);
-    let rows = Rows {
+    let rows = PieceRows {
         dofs: vec![3, 5, 7, 9],
         place: vec![
-            Place::Unknown { part: 0, row: 0 },
-            Place::Unknown { part: 0, row: 1 },
-            Place::Known,
-            Place::Empty,
+            RowDestination::Unknown { part: 0, row: 0 },
+            RowDestination::Unknown { part: 0, row: 1 },
+            RowDestination::Known,
+            RowDestination::Empty,
         ],
         coupled: vec![true, true, false, false],
     };
@@ -72,7 +72,7 @@ fn entries_find_their_places() {
         dofs: Cow::Owned(vec![5, 7, 3, 5, 9, -1]),
     };
     let place = |host: &[&[f64]]| {
-        let mut out = Numbers {
+        let mut out = TornValues {
             k: vec![vec![0.0; 4]],
             diagonal: Vec::new(),
             known: vec![Vec::new()],

@@ -101,7 +101,7 @@ impl Symmetric {
         }
     }
 
-    fn add_lots(&self, x: &[Lot], y: &mut [Lot]) {
+    fn add_lots(&self, x: &[TileVector], y: &mut [TileVector]) {
         let mut squares = &self.squares[..];
         for jb in 0..x.len() {
             let (column, rest) = squares.split_at(x.len() - jb);
@@ -132,10 +132,10 @@ impl Symmetric {
 }
 
 /// The entries of a vector that belong to one square.
-type Lot = [f64; SIDE];
+type TileVector = [f64; SIDE];
 
 /// A vector in lots, padded with zeros.
-fn lots(x: &[f64]) -> Vec<Lot> {
+fn lots(x: &[f64]) -> Vec<TileVector> {
     let lot = |c: &[f64]| std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0));
     x.chunks(SIDE).map(lot).collect()
 }

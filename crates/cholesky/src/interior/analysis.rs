@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::factor::Factor;
+use super::factor::InteriorFactor;
 use crate::multifrontal::{PartialCholesky, SingularInterior};
 use crate::symbolic::{Keep, Symbolic};
 use base::linalg::csr::Csr;
@@ -48,12 +48,19 @@ impl Analysis {
     ///
     /// # Errors
     /// A pivot that vanishes.
-    pub fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), SingularInterior> {
+    pub fn condense(
+        &self,
+        k: &Csr,
+        keep: Keep,
+    ) -> Result<(InteriorFactor, Dense), SingularInterior> {
         let (factor, s) = match keep {
             Keep::Boundary => PartialCholesky::new(k, self.symbolic.clone())?,
             Keep::Interior => self.solver(k)?,
         };
-        Ok((Factor::new(k, &self.symbolic.interface, factor, keep), s))
+        Ok((
+            InteriorFactor::new(k, &self.symbolic.interface, factor, keep),
+            s,
+        ))
     }
 
     fn inside(&self) -> Arc<Symbolic> {

@@ -6,63 +6,68 @@ use base::linalg::csr::Csr;
 
 /// The factored interior of a subdomain.
 ///
-/// [`forward`](Factor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I;
-/// [`backward`](Factor::backward) turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ). The meaning
-/// of `work` depends on the kind of factor.
+/// [`forward`](InteriorFactor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹
+/// f_I; [`backward`](InteriorFactor::backward) turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ).
+/// The meaning of `work` depends on the kind of factor.
 #[derive(Debug)]
-pub enum Factor {
+pub enum InteriorFactor {
     /// [L_II; L_ΓI] by fronts: each direction costs half a solve.
     Fronts(PartialCholesky),
     /// Solves with K_II: each direction costs a whole solve.
     Solves(Condensation),
 }
 
-impl Factor {
+impl InteriorFactor {
     /// The fronts of `k`; `keep` says whether they have the rows of the interface.
-    pub(crate) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
+    pub(crate) fn new(
+        k: &Csr,
+        interface: &[u32],
+        fronts: PartialCholesky,
+        keep: Keep,
+    ) -> InteriorFactor {
         match keep {
-            Keep::Boundary => Factor::Fronts(fronts),
-            Keep::Interior => Factor::Solves(Condensation::new(k, interface, fronts)),
+            Keep::Boundary => InteriorFactor::Fronts(fronts),
+            Keep::Interior => InteriorFactor::Solves(Condensation::new(k, interface, fronts)),
         }
     }
 
     /// Condenses the load `b` (length n, by dof).
     pub fn forward(&self, b: &mut [f64]) {
         match self {
-            Factor::Fronts(f) => f.forward(b),
-            Factor::Solves(c) => c.one(b, Condensation::forward),
+            InteriorFactor::Fronts(f) => f.forward(b),
+            InteriorFactor::Solves(c) => c.one(b, Condensation::forward),
         }
     }
 
     /// Solves in the interior for given values on the interface; `b` holds both.
     pub fn backward(&self, b: &mut [f64]) {
         match self {
-            Factor::Fronts(f) => f.backward(b),
-            Factor::Solves(c) => c.one(b, Condensation::backward),
+            InteriorFactor::Fronts(f) => f.backward(b),
+            InteriorFactor::Solves(c) => c.one(b, Condensation::backward),
         }
     }
 
-    /// Applies [`forward`](Factor::forward) to at most [`LANES`](crate::lanes::LANES) vectors.
+    /// Applies [`forward`](InteriorFactor::forward) to at most [`LANES`](crate::lanes::LANES) vectors.
     pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
         match self {
-            Factor::Fronts(f) => f.forward_many(columns),
-            Factor::Solves(c) => c.forward(columns),
+            InteriorFactor::Fronts(f) => f.forward_many(columns),
+            InteriorFactor::Solves(c) => c.forward(columns),
         }
     }
 
-    /// Applies [`backward`](Factor::backward) to at most [`LANES`](crate::lanes::LANES) vectors.
+    /// Applies [`backward`](InteriorFactor::backward) to at most [`LANES`](crate::lanes::LANES) vectors.
     pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
         match self {
-            Factor::Fronts(f) => f.backward_many(columns),
-            Factor::Solves(c) => c.backward(columns),
+            InteriorFactor::Fronts(f) => f.backward_many(columns),
+            InteriorFactor::Solves(c) => c.backward(columns),
         }
     }
 
     /// Number of bytes held.
     pub fn bytes(&self) -> usize {
         match self {
-            Factor::Fronts(f) => f.bytes(),
-            Factor::Solves(c) => c.bytes(),
+            InteriorFactor::Fronts(f) => f.bytes(),
+            InteriorFactor::Solves(c) => c.bytes(),
         }
     }
 }

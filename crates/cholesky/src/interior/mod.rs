@@ -1,5 +1,5 @@
 //! The interior of a subdomain, eliminated by the multifrontal method: the Schur complement S is what reaches the root,
-//! and the fronts are a [`Factor`] for condensed loads and interior solutions.
+//! and the fronts are an [`InteriorFactor`] for condensed loads and interior solutions.
 //!
 //! A pivot is an error if it is not positive, or is below 1e-13 of the diagonal entry it came from.
 
@@ -18,7 +18,7 @@ use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 
 pub use analysis::{Analysed, Analysis};
-pub use factor::Factor;
+pub use factor::InteriorFactor;
 
 /// Why a matrix could not be factored.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl Condenser<'_> {
         k: &Csr,
         interface: &[u32],
         coordinates: Option<&[[f64; 3]]>,
-    ) -> Result<(Factor, Dense), SingularInterior> {
+    ) -> Result<(InteriorFactor, Dense), SingularInterior> {
         if let Some(analysis) = self.analysed.and_then(|a| a.dense.get()) {
             return analysis.condense(k, self.keep);
         }

@@ -20,7 +20,7 @@ use fetifeti::FetiFeti;
 use petsc::Session;
 use report::json::contact::{LoadStep, OuterStep};
 use report::output;
-use rows::{GlobalState, Layout};
+use rows::{CheckpointLayout, GlobalState};
 use scene::{Displaced, Field, Scene};
 
 pub mod file;
@@ -67,9 +67,9 @@ pub struct Checkpoints {
 }
 
 /// [`Checkpoints`] with a solver that provides and takes states.
-pub struct Attached {
+pub struct AttachedCheckpoints {
     asked: Checkpoints,
-    layout: Option<Layout>,
+    layout: Option<CheckpointLayout>,
     start: Option<State>,
     /// The displacements for which the present contacts were made, where load steps renew them.
     left: Displaced,
@@ -221,9 +221,9 @@ impl Checkpoints {
     ///
     /// # Errors
     /// A checkpoint whose rows are not those of the solver.
-    pub fn attach(mut self, session: &Session, solver: &FetiFeti) -> Result<Attached> {
+    pub fn attach(mut self, session: &Session, solver: &FetiFeti) -> Result<AttachedCheckpoints> {
         let wanted = self.file.is_some() || self.resume.is_some();
-        let layout = wanted.then(|| Layout::new(solver.method()));
+        let layout = wanted.then(|| CheckpointLayout::new(solver.method()));
         let start = match (&layout, &self.resume) {
             (Some(layout), Some(file)) => {
                 let state = self.found.take().map(|found| found.state);
@@ -231,7 +231,7 @@ impl Checkpoints {
             }
             _ => None,
         };
-        Ok(Attached {
+        Ok(AttachedCheckpoints {
             left: self.left().map(|(_, left)| left).unwrap_or_default(),
             asked: self,
             layout,
@@ -240,7 +240,7 @@ impl Checkpoints {
     }
 }
 
-impl Attached {
+impl AttachedCheckpoints {
     /// The point at which the run resumes. Collective.
     ///
     /// # Errors
@@ -283,7 +283,7 @@ impl Attached {
     /// Notes that the solver has new rows, made for these displacements. Collective.
     pub fn renewed(&mut self, solver: &FetiFeti, left: &Displaced) {
         if let Some(layout) = &mut self.layout {
-            *layout = Layout::new(solver.method());
+            *layout = CheckpointLayout::new(solver.method());
             self.left.clone_from(left);
         }
     }

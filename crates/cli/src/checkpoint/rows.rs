@@ -68,7 +68,7 @@ impl Chunk {
 
 /// The owners of the rows, known to rank 0.
 #[derive(Debug)]
-pub struct Layout {
+pub struct CheckpointLayout {
     /// On the owned rows: Z⁰, and whether it may change.
     initial: Vec<bool>,
     inequality: Vec<bool>,
@@ -81,9 +81,9 @@ pub struct Layout {
     owned: Vec<usize>,
 }
 
-impl Layout {
+impl CheckpointLayout {
     /// The owners in this run. Collective.
-    pub fn new(solver: &LinearMethod) -> Layout {
+    pub fn new(solver: &LinearMethod) -> CheckpointLayout {
         let (session, problem) = (solver.session(), solver.problem());
         let dual = solver.dual();
         let jump = &dual.stiffness.jump;
@@ -115,7 +115,7 @@ impl Layout {
         }
         chunks.iter_mut().for_each(|c| c.sort_unstable());
         let [local, blocks] = chunks;
-        Layout {
+        CheckpointLayout {
             initial: jump.initial.clone(),
             inequality: jump.inequality.clone(),
             r: dual.natural.r,

@@ -11,13 +11,13 @@
 use std::collections::HashMap;
 
 use super::materials::Materials;
-use super::{shared, Place};
+use super::{shared, GatherTarget};
 use base::Result;
 use fetifeti::problem::BodyNode;
 use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
 use petsc::Session;
-use scene::assembly::recovery::{for_each_cell, squares, Sum};
+use scene::assembly::recovery::{for_each_cell, squares, NodalStressSum};
 use scene::{Scene, SteppedMesh};
 
 /// The meshes of this rank, with a place for each node and material of a body.
@@ -47,7 +47,7 @@ impl Estimator {
         let local = solver.problem().local.iter().map(|s| s.index);
         let parts = local.map(|index| SteppedMesh::new(scene, index));
         let parts: Vec<SteppedMesh> = session.agree(parts.collect::<Result<_>>())?;
-        let materials = Materials::told_apart(session, &parts, Place::EachRank);
+        let materials = Materials::told_apart(session, &parts, GatherTarget::EachRank);
         let mut out = Estimator {
             parts: Vec::new(),
             nodes: Vec::new(),
@@ -92,7 +92,7 @@ impl Estimator {
         step: usize,
     ) -> Vec<BodyError> {
         let scale = scene.prescribed_factor(step);
-        let mut sums = vec![Sum::default(); self.nodes.len()];
+        let mut sums = vec![NodalStressSum::default(); self.nodes.len()];
         for ((part, places), u) in self.parts.iter_mut().zip(&self.places).zip(u) {
             let mesh = part.at(scale);
             let mut places = places.iter();

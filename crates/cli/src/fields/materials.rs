@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Place;
+use super::GatherTarget;
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 use petsc::Session;
@@ -13,25 +13,30 @@ use scene::{Scene, SteppedMesh};
 const MOST: usize = 16;
 
 /// ρ, or Young's modulus, and Poisson's ratio, as bits.
-type Key = [u64; 2];
+type MaterialKey = [u64; 2];
 
 /// A material of a body.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct BodyMaterial {
     body: usize,
-    key: Key,
+    key: MaterialKey,
 }
 
 /// The materials of every body.
-pub(super) struct Materials(BTreeMap<usize, BTreeSet<Key>>);
+pub(super) struct Materials(BTreeMap<usize, BTreeSet<MaterialKey>>);
 
 /// The materials of one body.
-pub(super) struct OfBody(Vec<Key>);
+pub(super) struct OfBody(Vec<MaterialKey>);
 
 impl Materials {
     /// The materials of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
-    pub fn new(session: &Session, scene: &Scene, parts: &[SteppedMesh], place: Place) -> Materials {
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        parts: &[SteppedMesh],
+        place: GatherTarget,
+    ) -> Materials {
         // Scalar fields have no stress.
         if scene.form.is_elastic() {
             Materials::told_apart(session, parts, place)
@@ -41,7 +46,7 @@ impl Materials {
     }
 
     /// The materials of subdomains as [`new`](Self::new) finds them, in scalar problems, too. Collective.
-    pub fn told_apart(session: &Session, parts: &[SteppedMesh], place: Place) -> Materials {
+    pub fn told_apart(session: &Session, parts: &[SteppedMesh], place: GatherTarget) -> Materials {
         let mut all = Materials(BTreeMap::new());
         for mesh in parts.iter().map(SteppedMesh::mesh) {
             let mut last = None;
@@ -51,7 +56,7 @@ impl Materials {
                 }
             }
         }
-        if place == Place::EachRank {
+        if place == GatherTarget::EachRank {
             let pairs = all
                 .0
                 .iter()
@@ -66,7 +71,7 @@ impl Materials {
         all
     }
 
-    fn add(&mut self, body: usize, key: Key) {
+    fn add(&mut self, body: usize, key: MaterialKey) {
         let keys = self.0.entry(body).or_default();
         if keys.len() <= MOST {
             keys.insert(key);
@@ -95,7 +100,7 @@ impl OfBody {
     }
 }
 
-fn key(mesh: &SubdomainMesh, e: usize) -> Key {
+fn key(mesh: &SubdomainMesh, e: usize) -> MaterialKey {
     let poisson = mesh.poisson.get(e).copied().unwrap_or(0.0);
     [mesh.rho[e], poisson].map(f64::to_bits)
 }

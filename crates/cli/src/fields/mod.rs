@@ -22,12 +22,12 @@ use mesh::Cells;
 use parallel::exchange::exchange_by_rank;
 use parallel::parcels::Parcels;
 use petsc::Session;
-use scene::assembly::recovery::{cell_stresses, for_each_cell, Sum};
+use scene::assembly::recovery::{cell_stresses, for_each_cell, NodalStressSum};
 use scene::{Scene, SteppedMesh};
 
 /// Where fields come together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Place {
+pub enum GatherTarget {
     /// The fields of the whole scene come together on rank 0.
     #[default]
     FirstRank,
@@ -39,7 +39,7 @@ pub enum Place {
 /// and stress.
 #[derive(Default)]
 pub struct Gathered {
-    place: Place,
+    place: GatherTarget,
     /// The subdomains, by number.
     parts: Vec<SteppedMesh>,
     pub(super) points: Vec<[f64; 3]>,
@@ -72,12 +72,12 @@ impl Gathered {
         session: &Session,
         scene: &Scene,
         solver: &FetiFeti,
-        place: Place,
+        place: GatherTarget,
     ) -> Result<Gathered> {
         let mine: Vec<usize> = match (place, session.rank()) {
-            (Place::EachRank, _) => solver.problem().local.iter().map(|s| s.index).collect(),
-            (Place::FirstRank, 0) => (0..scene.n_subdomains()).collect(),
-            (Place::FirstRank, _) => Vec::new(),
+            (GatherTarget::EachRank, _) => solver.problem().local.iter().map(|s| s.index).collect(),
+            (GatherTarget::FirstRank, 0) => (0..scene.n_subdomains()).collect(),
+            (GatherTarget::FirstRank, _) => Vec::new(),
         };
         let parts = mine.iter().map(|&index| SteppedMesh::new(scene, index));
         let mut all = Gathered {
@@ -140,11 +140,11 @@ impl Gathered {
     ) {
         let local = solver.problem().local.iter().map(|s| s.index);
         let mut solved = match self.place {
-            Place::EachRank => local
+            GatherTarget::EachRank => local
                 .zip(&solution.u)
                 .map(|(index, u)| (index, session.rank(), u.clone()))
                 .collect(),
-            Place::FirstRank => to_first_rank(session, local.zip(&solution.u)),
+            GatherTarget::FirstRank => to_first_rank(session, local.zip(&solution.u)),
         };
         solved.sort_unstable_by_key(|part| part.0);
         let c = scene.components();
@@ -154,7 +154,7 @@ impl Gathered {
         self.u.resize(c * self.points.len(), 0.0);
         self.cell_stress.clear();
         self.rank.clear();
-        let mut sums = vec![Sum::default(); if elastic { self.points.len() } else { 0 }];
+        let mut sums = vec![NodalStressSum::default(); if elastic { self.points.len() } else { 0 }];
         let mut first = 0;
         for (part, (_, rank, u)) in self.parts.iter_mut().zip(solved) {
             let mesh = part.at(scale);
@@ -177,10 +177,10 @@ impl Gathered {
             self.rank.resize(first + cells.len(), rank as u32);
             first += cells.len();
         }
-        if self.place == Place::EachRank && elastic {
+        if self.place == GatherTarget::EachRank && elastic {
             shared::add(session, scene, &self.nodes, &self.material, &mut sums);
         }
-        self.stress = sums.iter().map(Sum::mean).collect();
+        self.stress = sums.iter().map(NodalStressSum::mean).collect();
     }
 
     /// The displacement of a point; zero in scalar problems.

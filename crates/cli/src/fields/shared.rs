@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use fetifeti::problem::BodyNode;
 use parallel::exchange::exchange_by_rank;
 use petsc::Session;
-use scene::assembly::recovery::Sum;
+use scene::assembly::recovery::NodalStressSum;
 use scene::Scene;
 
 /// The sum of a rank at a node: body, node and material.
@@ -14,7 +14,7 @@ use scene::Scene;
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct NodeSum {
     at: [usize; 3],
-    sum: Sum,
+    sum: NodalStressSum,
 }
 
 /// Adds to every sum those of other ranks for the same node and material. Collective.
@@ -26,7 +26,7 @@ pub(super) fn add(
     scene: &Scene,
     nodes: &[BodyNode],
     material: &[u32],
-    sums: &mut [Sum],
+    sums: &mut [NodalStressSum],
 ) {
     let size = session.size();
     if size == 1 {
@@ -43,13 +43,13 @@ pub(super) fn add(
         }
     }
     let received = exchange_by_rank(session.comm(), outgoing);
-    let mut totals: HashMap<[usize; 3], Sum> = HashMap::new();
+    let mut totals: HashMap<[usize; 3], NodalStressSum> = HashMap::new();
     for part in received.iter().flatten() {
         totals.entry(part.at).or_default().merge(&part.sum);
     }
     let total = |part: &NodeSum| totals[&part.at];
     let answers = received.iter().map(|list| list.iter().map(total).collect());
-    let answers: Vec<Vec<Sum>> = exchange_by_rank(session.comm(), answers.collect());
+    let answers: Vec<Vec<NodalStressSum>> = exchange_by_rank(session.comm(), answers.collect());
     for (&p, total) in sent.iter().flatten().zip(answers.iter().flatten()) {
         sums[p] = *total;
     }

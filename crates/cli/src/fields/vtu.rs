@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Gathered, Place};
+use super::{GatherTarget, Gathered};
 use crate::first_rank::on_first_rank;
 use crate::smoothed::smoothed;
 use base::Result;
@@ -17,12 +17,12 @@ use report::paraview::vtu::Vtu;
 use scene::assembly::recovery::components;
 use scene::{distribution, Scene};
 
-impl Place {
+impl GatherTarget {
     /// The name of the file for ParaView.
     pub fn file(self, name: &str) -> String {
         match self {
-            Place::FirstRank => format!("{name}.vtu"),
-            Place::EachRank => format!("{name}.pvtu"),
+            GatherTarget::FirstRank => format!("{name}.vtu"),
+            GatherTarget::EachRank => format!("{name}.pvtu"),
         }
     }
 }
@@ -47,7 +47,7 @@ impl Gathered {
         let path = dir.join(self.place.file(name));
         let own = solution.rows();
         let contact = any(session.comm(), own.iter().any(SolvedRow::is_inequality));
-        if self.place == Place::FirstRank {
+        if self.place == GatherTarget::FirstRank {
             return on_first_rank(session, || {
                 self.grid(scene, (rows, contact), &mut |grid| grid.write(&path))
             });

@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::outline::{value, Instance, Outline};
-use super::pieces::{coordinates, is_system, largest, of_instance, turned, Elements};
-use super::placement::Placement;
-use super::targets::{Names, Of, Offsets, Scope};
-use crate::cards::{Card, Cards, Flattened, Line, Param, Row};
+use super::outline::{value, DeckOutline, Instance};
+use super::pieces::{coordinates, is_system, largest, of_instance, turned, ElementLines};
+use super::placement::InstancePlacement;
+use super::targets::{CardScope, DeckNames, Of, Offsets};
+use crate::cards::{Card, Cards, DataLine, Flattened, Param, SourceLine};
+use crate::deck_line::{DeckLine, Note};
 use crate::numbers::{clip, real};
-use crate::place::{Note, Place};
 use base::Result;
 use mesh::Digits;
 
@@ -35,14 +35,14 @@ const ROOM: usize = 5_000_000;
 /// The flat deck as far as it is written.
 pub(super) struct Flat<'a> {
     cards: &'a Cards,
-    pub(super) outline: &'a Outline<'a>,
-    names: Names<'a>,
+    pub(super) outline: &'a DeckOutline<'a>,
+    names: DeckNames<'a>,
     /// By instance what is added to its numbers, and its largest numbers then.
     pub(super) numbers: Vec<[Offsets; 2]>,
     /// The offsets that are added to the numbers of the assembly's own nodes and elements.
     own: Offsets,
     text: String,
-    pub(super) lines: Vec<Line>,
+    pub(super) lines: Vec<SourceLine>,
     pub(super) out: Vec<Card>,
     notes: Vec<Note>,
     /// The digits of coordinates that are moved.
@@ -51,10 +51,10 @@ pub(super) struct Flat<'a> {
 
 impl<'a> Flat<'a> {
     /// Nothing is written yet; numbers are dealt out.
-    pub fn new(cards: &'a Cards, outline: &'a Outline<'a>) -> Result<Flat<'a>> {
+    pub fn new(cards: &'a Cards, outline: &'a DeckOutline<'a>) -> Result<Flat<'a>> {
         let mut top = Offsets::default();
         let mut numbers = Vec::new();
-        let mut names = Names {
+        let mut names = DeckNames {
             instances: HashMap::new(),
             assembly: outline.assembly,
         };
@@ -92,13 +92,13 @@ impl<'a> Flat<'a> {
         let outline = self.outline;
         let mut used = vec![false; outline.parts.len()];
         for (k, instance) in outline.instances.iter().enumerate() {
-            let scope = Scope {
+            let scope = CardScope {
                 instance: Some(instance.name),
                 offsets: self.numbers[k][0],
             };
             let again = std::mem::replace(&mut used[instance.part], true);
             let of_part = outline.parts[instance.part].cards.len();
-            let mut system = Placement::NONE;
+            let mut system = InstancePlacement::NONE;
             for (i, card) in of_instance(outline, instance).enumerate() {
                 let told = again && i < of_part;
                 if !told || OF_INSTANCES.contains(&card.keyword.as_str()) || is_system(card) {
@@ -114,14 +114,14 @@ impl<'a> Flat<'a> {
             }
         }
         self.short_names()?;
-        let scope = Scope {
+        let scope = CardScope {
             instance: None,
             offsets: self.own,
         };
-        let mut system = Placement::NONE;
+        let mut system = InstancePlacement::NONE;
         for &card in &outline.others {
             let data = self.scope_of(card, scope)?;
-            self.card(card, [scope, data], &Placement::NONE, &mut system)?;
+            self.card(card, [scope, data], &InstancePlacement::NONE, &mut system)?;
         }
         Ok(())
     }
@@ -138,7 +138,7 @@ impl<'a> Flat<'a> {
     }
 
     /// Where the data of a card of the assembly stand: sets may be of an instance.
-    fn scope_of(&self, card: &Card, scope: Scope<'a>) -> Result<Scope<'a>> {
+    fn scope_of(&self, card: &Card, scope: CardScope<'a>) -> Result<CardScope<'a>> {
         let named = match card.keyword.as_str() {
             "NSET" | "ELSET" => value(card, "INSTANCE"),
             _ => None,
@@ -148,7 +148,7 @@ impl<'a> Flat<'a> {
         };
         let plain = self.names.instance(name);
         match self.names.instances.get_key_value(plain) {
-            Some((&instance, &offsets)) => Ok(Scope {
+            Some((&instance, &offsets)) => Ok(CardScope {
                 instance: Some(instance),
                 offsets,
             }),
@@ -163,9 +163,9 @@ impl<'a> Flat<'a> {
     pub(super) fn card(
         &mut self,
         card: &Card,
-        [own, data]: [Scope<'a>; 2],
-        placement: &Placement,
-        system: &mut Placement,
+        [own, data]: [CardScope<'a>; 2],
+        placement: &InstancePlacement,
+        system: &mut InstancePlacement,
     ) -> Result<()> {
         if is_system(card) {
             *system = self.system(card)?;
@@ -173,18 +173,19 @@ impl<'a> Flat<'a> {
         }
         let names = std::mem::take(&mut self.names);
         let target = |text: &str, of: Of| data.target(&names, text, of);
-        let each = |row: &Row, change: &dyn Fn(usize, &str) -> String| -> Option<Vec<String>> {
-            let fields = row.fields.iter().enumerate();
-            Some(fields.map(|(k, f)| change(k, f)).collect())
-        };
-        let first = |row: &Row, of: Of| {
+        let each =
+            |row: &DataLine, change: &dyn Fn(usize, &str) -> String| -> Option<Vec<String>> {
+                let fields = row.fields.iter().enumerate();
+                Some(fields.map(|(k, f)| change(k, f)).collect())
+            };
+        let first = |row: &DataLine, of: Of| {
             each(row, &|k, f| match k {
                 0 => target(f, of),
                 _ => f.to_string(),
             })
         };
         let generate = value(card, "GENERATE").is_some();
-        let set = |row: &Row, of: Of| {
+        let set = |row: &DataLine, of: Of| {
             each(row, &|k, f| match (generate, k) {
                 (true, 2..) => f.to_string(),
                 (true, _) => data.number(f, of),
@@ -193,7 +194,7 @@ impl<'a> Flat<'a> {
         };
         let moves = !placement.is_none() || !system.is_none();
         let [nodes, cells] = data.offsets.0;
-        let mut elements = Elements::of(card);
+        let mut elements = ElementLines::of(card);
         let mut digits = self.digits;
         let range = self.rows(card, &mut |row| match card.keyword.as_str() {
             "NODE" if nodes == 0 && !moves => None,
@@ -269,7 +270,7 @@ impl<'a> Flat<'a> {
     fn rows(
         &mut self,
         card: &Card,
-        change: &mut dyn FnMut(&Row) -> Option<Vec<String>>,
+        change: &mut dyn FnMut(&DataLine) -> Option<Vec<String>>,
     ) -> Range<usize> {
         let start = self.lines.len();
         let cards = self.cards;
@@ -284,7 +285,7 @@ impl<'a> Flat<'a> {
     }
 
     /// A new line.
-    pub(super) fn line(&mut self, place: Place, text: &str) {
+    pub(super) fn line(&mut self, place: DeckLine, text: &str) {
         let from = self.text.len();
         self.text.push_str(text);
         self.text.push('\n');
@@ -293,7 +294,7 @@ impl<'a> Flat<'a> {
     }
 
     /// The system that *SYSTEM defines.
-    fn system(&self, card: &Card) -> Result<Placement> {
+    fn system(&self, card: &Card) -> Result<InstancePlacement> {
         let fail = |message: &str| self.cards.files.error(card.place, message);
         let mut numbers = Vec::new();
         for (k, row) in self.cards.rows(card).enumerate() {
@@ -313,10 +314,10 @@ impl<'a> Flat<'a> {
         }
         numbers.resize(numbers.len().div_ceil(3) * 3, 0.0);
         let points: Vec<[f64; 3]> = numbers.chunks(3).map(|x| [x[0], x[1], x[2]]).collect();
-        Placement::system(&points).ok_or_else(|| fail("*SYSTEM: its points define no axes"))
+        InstancePlacement::system(&points).ok_or_else(|| fail("*SYSTEM: its points define no axes"))
     }
 
-    fn note(&mut self, keyword: &str, place: Place, reason: String) {
+    fn note(&mut self, keyword: &str, place: DeckLine, reason: String) {
         self.notes.push(Note {
             keyword: keyword.into(),
             place,

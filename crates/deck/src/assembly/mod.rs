@@ -17,10 +17,10 @@ mod short;
 mod targets;
 
 use super::cards::Cards;
-use super::place::Note;
+use super::deck_line::Note;
 use base::Result;
 use flat::Flat;
-use outline::Outline;
+use outline::DeckOutline;
 
 /// Keywords that only such decks have; *SYSTEM moves the nodes behind it.
 const STRUCTURE: [&str; 7] = [
@@ -42,7 +42,7 @@ pub(super) fn flatten(cards: Cards) -> Result<(Cards, Vec<Note>)> {
     if cards.cards.iter().all(is_flat) {
         return Ok((cards, Vec::new()));
     }
-    let outline = Outline::new(&cards)?;
+    let outline = DeckOutline::new(&cards)?;
     let mut flat = Flat::new(&cards, &outline)?;
     flat.write()?;
     let (flat, notes) = flat.end();

@@ -2,33 +2,33 @@
 
 use std::collections::HashSet;
 
-use super::placement::Placement;
+use super::placement::InstancePlacement;
 use crate::cards::{Card, Cards};
+use crate::deck_line::DeckLine;
 use crate::numbers::{clip, real};
-use crate::place::Place;
 use base::{Error, Result};
 
 /// A part, with its cards.
-pub(super) struct Part<'a> {
+pub(super) struct DeckPart<'a> {
     pub name: &'a str,
-    pub place: Place,
+    pub place: DeckLine,
     pub cards: Vec<&'a Card>,
 }
 
 /// An instance of a part, with what stands in it beside.
 pub(super) struct Instance<'a> {
     pub name: &'a str,
-    pub place: Place,
+    pub place: DeckLine,
     /// Its part, as a place in the list of parts.
     pub part: usize,
-    pub placement: Placement,
+    pub placement: InstancePlacement,
     pub cards: Vec<&'a Card>,
 }
 
 /// The cards of a deck by where they stand.
 #[derive(Default)]
-pub(super) struct Outline<'a> {
-    pub parts: Vec<Part<'a>>,
+pub(super) struct DeckOutline<'a> {
+    pub parts: Vec<DeckPart<'a>>,
     pub instances: Vec<Instance<'a>>,
     /// The name of the assembly, empty if it has none.
     pub assembly: &'a str,
@@ -44,10 +44,10 @@ enum Open {
     Instance,
 }
 
-impl<'a> Outline<'a> {
+impl<'a> DeckOutline<'a> {
     /// Deals out the cards.
-    pub fn new(cards: &'a Cards) -> Result<Outline<'a>> {
-        let mut outline = Outline::default();
+    pub fn new(cards: &'a Cards) -> Result<DeckOutline<'a>> {
+        let mut outline = DeckOutline::default();
         // What is open, with the cards that opened it.
         let mut open: Vec<(Open, &Card)> = Vec::new();
         let mut assembled = false;
@@ -74,7 +74,7 @@ impl<'a> Outline<'a> {
                             return fail(format!("*PART: part {} is defined before", clip(name)));
                         }
                         open.push((Open::Part, card));
-                        outline.parts.push(Part {
+                        outline.parts.push(DeckPart {
                             name,
                             place: card.place,
                             cards: Vec::new(),
@@ -171,11 +171,11 @@ impl<'a> Outline<'a> {
     /// Without an assembly, as other programs write meshes, each part is there once, at its place.
     fn stand_alone(&mut self) {
         let parts = self.parts.iter().enumerate();
-        let instance = |(k, part): (usize, &Part<'a>)| Instance {
+        let instance = |(k, part): (usize, &DeckPart<'a>)| Instance {
             name: part.name,
             place: part.place,
             part: k,
-            placement: Placement::NONE,
+            placement: InstancePlacement::NONE,
             cards: Vec::new(),
         };
         self.instances = parts.map(instance).collect();
@@ -223,7 +223,7 @@ fn written(card: &Card) -> String {
 }
 
 /// The placement that the lines of an *INSTANCE say: a way, and then a turn about an axis through two points.
-fn placement(cards: &Cards, card: &Card) -> Result<Placement> {
+fn placement(cards: &Cards, card: &Card) -> Result<InstancePlacement> {
     let (mut way, mut rotation) = ([0.0; 3], None);
     for (k, row) in cards.rows(card).enumerate() {
         let fail = |message: &str| -> Error { cards.files.error(row.place, message) };
@@ -246,7 +246,7 @@ fn placement(cards: &Cards, card: &Card) -> Result<Placement> {
             }
         }
     }
-    Placement::new(way, rotation).ok_or_else(|| {
+    InstancePlacement::new(way, rotation).ok_or_else(|| {
         let message = "*INSTANCE: the two points of the axis of rotation are one";
         cards.files.error(card.place, message)
     })

@@ -1,18 +1,18 @@
 //! Pieces of the cards of parts: sets, elements over several lines, numbers, points.
 
-use super::outline::{value, Instance, Outline};
-use super::placement::Placement;
+use super::outline::{value, DeckOutline, Instance};
+use super::placement::InstancePlacement;
 use super::targets::{Of, Offsets};
-use crate::cards::{Card, Cards, Row};
+use crate::cards::{Card, Cards, DataLine};
 use crate::element::shape;
 use crate::numbers::{real, whole};
 
 /// A set or a surface: "NSET", "ELSET" or "SURFACE", and its name.
-pub(super) type Named<'a> = (&'static str, &'a str);
+pub(super) type SetName<'a> = (&'static str, &'a str);
 
 /// The cards of an instance: those of its part, and its own.
 pub(super) fn of_instance<'a>(
-    outline: &'a Outline<'a>,
+    outline: &'a DeckOutline<'a>,
     instance: &'a Instance<'a>,
 ) -> impl Iterator<Item = &'a Card> + Clone {
     let part = outline.parts[instance.part].cards.iter();
@@ -25,7 +25,7 @@ pub(super) fn is_system(card: &Card) -> bool {
 }
 
 /// The set or surface that a card defines.
-pub(super) fn defined(card: &Card) -> Option<Named<'_>> {
+pub(super) fn defined(card: &Card) -> Option<SetName<'_>> {
     let (kind, key) = match card.keyword.as_str() {
         "NODE" | "NSET" => ("NSET", "NSET"),
         "ELEMENT" | "ELSET" => ("ELSET", "ELSET"),
@@ -40,7 +40,7 @@ pub(super) fn defined(card: &Card) -> Option<Named<'_>> {
 pub(super) fn largest<'c>(cards: &Cards, list: impl Iterator<Item = &'c Card>) -> Offsets {
     let mut most = [0, 0];
     for card in list {
-        let mut elements = Elements::of(card);
+        let mut elements = ElementLines::of(card);
         let of = match card.keyword.as_str() {
             "NODE" => Of::Nodes,
             "ELEMENT" => Of::Cells,
@@ -57,23 +57,23 @@ pub(super) fn largest<'c>(cards: &Cards, list: impl Iterator<Item = &'c Card>) -
 }
 
 /// Which lines of an *ELEMENT begin an element: others go on with its nodes.
-pub(super) struct Elements {
+pub(super) struct ElementLines {
     /// The nodes of one; 1 where the kind is not known, so that every line begins one.
     nodes: usize,
     /// The nodes of the present element that are still to come.
     left: usize,
 }
 
-impl Elements {
-    pub fn of(card: &Card) -> Elements {
+impl ElementLines {
+    pub fn of(card: &Card) -> ElementLines {
         let kind = value(card, "TYPE").and_then(shape);
-        Elements {
+        ElementLines {
             nodes: kind.map_or(1, |k| k.nodes()),
             left: 0,
         }
     }
 
-    pub fn begins(&mut self, row: &Row) -> bool {
+    pub fn begins(&mut self, row: &DataLine) -> bool {
         let begins = self.left == 0;
         let (due, here) = if begins {
             (self.nodes, row.fields.len().saturating_sub(1))
@@ -86,7 +86,7 @@ impl Elements {
 }
 
 /// The coordinates of a node, if they can be read.
-pub(super) fn coordinates(row: &Row) -> Option<[f64; 3]> {
+pub(super) fn coordinates(row: &DataLine) -> Option<[f64; 3]> {
     let mut out = [0.0; 3];
     for (k, x) in out.iter_mut().enumerate() {
         *x = match row.field(k + 1) {
@@ -98,7 +98,11 @@ pub(super) fn coordinates(row: &Row) -> Option<[f64; 3]> {
 }
 
 /// The two points of a *TRANSFORM of a part that is placed.
-pub(super) fn turned(card: &Card, row: &Row, placement: &Placement) -> Option<Vec<String>> {
+pub(super) fn turned(
+    card: &Card,
+    row: &DataLine,
+    placement: &InstancePlacement,
+) -> Option<Vec<String>> {
     let numbers: Option<Vec<f64>> = row.fields.iter().map(|f| real(f)).collect();
     let numbers = numbers.filter(|n| n.len() == 6)?;
     let cylindrical = value(card, "TYPE") == Some("C");

@@ -4,7 +4,7 @@ use base::linalg::vec3::{cross, dot, minus, norm, unit};
 
 /// A turn by R and a way: x becomes R x + way.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Placement {
+pub(super) struct InstancePlacement {
     turn: [[f64; 3]; 3],
     way: [f64; 3],
 }
@@ -15,17 +15,20 @@ const EYE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// The part of the length of a vector that counts as zero.
 const NOTHING: f64 = 1e-10;
 
-impl Placement {
+impl InstancePlacement {
     /// Everything stays where it is.
-    pub const NONE: Placement = Placement {
+    pub const NONE: InstancePlacement = InstancePlacement {
         turn: EYE,
         way: [0.0; 3],
     };
 
     /// A way, and then a turn by some degrees about the axis from `a` to `b`. `None` for an axis without length.
-    pub fn new(way: [f64; 3], rotation: Option<([f64; 3], [f64; 3], f64)>) -> Option<Placement> {
+    pub fn new(
+        way: [f64; 3],
+        rotation: Option<([f64; 3], [f64; 3], f64)>,
+    ) -> Option<InstancePlacement> {
         let Some((a, b, degrees)) = rotation else {
-            return Some(Placement { turn: EYE, way });
+            return Some(InstancePlacement { turn: EYE, way });
         };
         let k = unit(minus(b, a))?;
         let (sin, cos) = sin_cos(degrees);
@@ -36,14 +39,14 @@ impl Placement {
                 e[i] * cos + cross(k, e)[i] * sin + k[i] * k[j] * (1.0 - cos)
             })
         });
-        let only = Placement {
+        let only = InstancePlacement {
             turn,
             way: [0.0; 3],
         };
         // R (x + way − a) + a
         let from = [0, 1, 2].map(|d| way[d] - a[d]);
         let moved = only.vector(from);
-        Some(Placement {
+        Some(InstancePlacement {
             turn,
             way: [0, 1, 2].map(|d| moved[d] + a[d]),
         })
@@ -51,12 +54,12 @@ impl Placement {
 
     /// The system of *SYSTEM: its origin, a point on its first axis, a point in the plane of the first two. Without the
     /// last one the third axis stays. `None` if the points define no axes.
-    pub fn system(points: &[[f64; 3]]) -> Option<Placement> {
+    pub fn system(points: &[[f64; 3]]) -> Option<InstancePlacement> {
         let [a, rest @ ..] = points else {
-            return Some(Placement::NONE);
+            return Some(InstancePlacement::NONE);
         };
         let [b, rest @ ..] = rest else {
-            return Placement::new(*a, None);
+            return InstancePlacement::new(*a, None);
         };
         let first = unit(minus(*b, *a))?;
         let across = match rest {
@@ -69,7 +72,7 @@ impl Placement {
         }
         let third = unit(across)?;
         let axes = [first, cross(third, first), third];
-        Some(Placement {
+        Some(InstancePlacement {
             turn: [0, 1, 2].map(|i| [0, 1, 2].map(|j| axes[j][i])),
             way: *a,
         })
@@ -77,7 +80,7 @@ impl Placement {
 
     /// Whether everything stays where it is.
     pub fn is_none(&self) -> bool {
-        *self == Placement::NONE
+        *self == InstancePlacement::NONE
     }
 
     /// Where a point gets.

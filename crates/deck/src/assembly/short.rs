@@ -3,11 +3,11 @@
 use std::collections::{HashMap, HashSet};
 
 use super::flat::Flat;
-use super::pieces::{defined, of_instance, Named};
-use super::placement::Placement;
-use super::targets::{Of, Offsets, Scope};
+use super::pieces::{defined, of_instance, SetName};
+use super::placement::InstancePlacement;
+use super::targets::{CardScope, Of, Offsets};
 use crate::cards::{Card, Param};
-use crate::place::Place;
+use crate::deck_line::DeckLine;
 use base::Result;
 
 impl<'a> Flat<'a> {
@@ -15,9 +15,9 @@ impl<'a> Flat<'a> {
     /// instance as a set of elements.
     pub(super) fn short_names(&mut self) -> Result<()> {
         let outline = self.outline;
-        let taken: HashSet<Named> = outline.others.iter().filter_map(|c| defined(c)).collect();
-        let mut order: Vec<Named> = Vec::new();
-        let mut of: HashMap<Named, Vec<usize>> = HashMap::new();
+        let taken: HashSet<SetName> = outline.others.iter().filter_map(|c| defined(c)).collect();
+        let mut order: Vec<SetName> = Vec::new();
+        let mut of: HashMap<SetName, Vec<usize>> = HashMap::new();
         for (k, instance) in outline.instances.iter().enumerate() {
             for card in of_instance(outline, instance).filter(|c| !c.lines().is_empty()) {
                 let Some(named) = defined(card) else { continue };
@@ -30,8 +30,8 @@ impl<'a> Flat<'a> {
                 }
             }
         }
-        let short = |named: &Named| of[named].len() == 1 && !taken.contains(named);
-        let mut given: HashSet<Named> = taken.clone();
+        let short = |named: &SetName| of[named].len() == 1 && !taken.contains(named);
+        let mut given: HashSet<SetName> = taken.clone();
         for named in order.into_iter().filter(short) {
             given.insert(named);
             self.short_name(named, of[&named][0])?;
@@ -49,25 +49,25 @@ impl<'a> Flat<'a> {
     }
 
     /// One of them, which instance `k` has.
-    fn short_name(&mut self, (keyword, name): Named<'a>, k: usize) -> Result<()> {
+    fn short_name(&mut self, (keyword, name): SetName<'a>, k: usize) -> Result<()> {
         let outline = self.outline;
         let instance = &outline.instances[k];
         let mut cards =
             of_instance(outline, instance).filter(|c| defined(c) == Some((keyword, name)));
         if keyword == "SURFACE" {
             let scopes = [
-                Scope {
+                CardScope {
                     instance: None,
                     offsets: Offsets::default(),
                 },
-                Scope {
+                CardScope {
                     instance: Some(instance.name),
                     offsets: self.numbers[k][0],
                 },
             ];
             return cards.try_for_each(|card| {
-                let mut system = Placement::NONE;
-                self.card(card, scopes, &Placement::NONE, &mut system)
+                let mut system = InstancePlacement::NONE;
+                self.card(card, scopes, &InstancePlacement::NONE, &mut system)
             });
         }
         let place = cards.next().map_or(instance.place, |c| c.place);
@@ -78,7 +78,7 @@ impl<'a> Flat<'a> {
     }
 
     /// A card of a set, whose lines begin at `start`.
-    fn set(&mut self, keyword: &str, params: &[(&str, &str)], place: Place, start: usize) {
+    fn set(&mut self, keyword: &str, params: &[(&str, &str)], place: DeckLine, start: usize) {
         let param = |(name, value): &(&str, &str)| Param {
             name: name.to_string(),
             value: value.to_string(),

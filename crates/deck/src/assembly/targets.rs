@@ -24,7 +24,7 @@ impl Offsets {
 
 /// The meaning of names and numbers in the whole deck.
 #[derive(Default)]
-pub(super) struct Names<'a> {
+pub(super) struct DeckNames<'a> {
     /// The numbers that are added, by instance.
     pub instances: HashMap<&'a str, Offsets>,
     /// The name of the assembly, which may stand before others.
@@ -33,15 +33,15 @@ pub(super) struct Names<'a> {
 
 /// Where a card stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scope<'a> {
+pub(super) struct CardScope<'a> {
     /// The instance; `None`: the assembly, or the deck itself.
     pub instance: Option<&'a str>,
     pub offsets: Offsets,
 }
 
-impl Scope<'_> {
+impl CardScope<'_> {
     /// The name of a set or surface that is defined here.
-    pub fn name(&self, names: &Names<'_>, name: &str) -> String {
+    pub fn name(&self, names: &DeckNames<'_>, name: &str) -> String {
         match self.instance {
             _ if name.is_empty() => String::new(),
             Some(instance) => format!("{instance}.{name}"),
@@ -59,7 +59,7 @@ impl Scope<'_> {
 
     /// The target that a field names, a number or a set: in an instance its own, and elsewhere those of instances by
     /// their names.
-    pub fn target(&self, names: &Names<'_>, text: &str, of: Of) -> String {
+    pub fn target(&self, names: &DeckNames<'_>, text: &str, of: Of) -> String {
         if text.is_empty() {
             return String::new();
         }
@@ -80,7 +80,7 @@ impl Scope<'_> {
     }
 }
 
-impl<'a> Names<'a> {
+impl<'a> DeckNames<'a> {
     /// A name without that of the assembly before it.
     fn plain<'n>(&self, name: &'n str) -> &'n str {
         let rest = name.strip_prefix(self.assembly);

@@ -1,12 +1,12 @@
 //! The deck as far as it is read, and the functions that every part of the reader needs.
 
-use super::held::{Amplitude, State};
+use super::held::{Amplitude, DeckState};
 use super::ids::Ids;
 use super::named::Sets;
 use crate::cards::{Card, Cards};
+use crate::deck_line::{DeckLine, Files, Note};
 use crate::keywords::verdict;
 use crate::model::Deck;
-use crate::place::{Files, Note, Place};
 use base::Result;
 use elements::kind::CellKind;
 use mesh::Digits;
@@ -17,7 +17,7 @@ use std::collections::HashMap;
 const ENTRIES: usize = 5_000_000;
 
 /// The reader of a deck, with all that is read so far.
-pub(crate) struct Reader<'a> {
+pub(crate) struct DeckReader<'a> {
     pub(super) cards: &'a Cards,
     pub(super) files: &'a Files,
     /// Whether everything is read, or the mesh only.
@@ -40,15 +40,15 @@ pub(crate) struct Reader<'a> {
     pub(super) materials: HashMap<String, u32>,
     pub(super) interactions: HashMap<String, u32>,
     /// The contact pairs that say that nodes meet surfaces, by their lines.
-    pub(super) by_nodes: Vec<Place>,
-    pub(super) state: State,
+    pub(super) by_nodes: Vec<DeckLine>,
+    pub(super) state: DeckState,
     /// Entries that are left, see [`ENTRIES`].
     pub(super) entries: usize,
 }
 
-impl<'a> Reader<'a> {
-    pub fn new(cards: &'a Cards, whole: bool) -> Reader<'a> {
-        Reader {
+impl<'a> DeckReader<'a> {
+    pub fn new(cards: &'a Cards, whole: bool) -> DeckReader<'a> {
+        DeckReader {
             cards,
             files: &cards.files,
             whole,
@@ -66,13 +66,13 @@ impl<'a> Reader<'a> {
             materials: HashMap::new(),
             interactions: HashMap::new(),
             by_nodes: Vec::new(),
-            state: State::default(),
+            state: DeckState::default(),
             entries: ENTRIES.saturating_add(cards.lines().saturating_mul(16)),
         }
     }
 
     /// Takes `n` entries from those that are left.
-    pub(super) fn spend(&mut self, n: usize, place: Place) -> Result<()> {
+    pub(super) fn spend(&mut self, n: usize, place: DeckLine) -> Result<()> {
         match self.entries.checked_sub(n) {
             Some(left) => {
                 self.entries = left;
@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
         Err(self.files.error(card.place, message))
     }
 
-    pub(super) fn note(card: &Card, place: Place, reason: impl Into<String>) -> Note {
+    pub(super) fn note(card: &Card, place: DeckLine, reason: impl Into<String>) -> Note {
         Note {
             keyword: title(card),
             place,

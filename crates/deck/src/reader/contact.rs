@@ -1,17 +1,17 @@
 //! *SURFACE INTERACTION with its *SURFACE BEHAVIOR and *FRICTION, *TIE, *CONTACT PAIR, *CLEARANCE.
 
-use super::base::Reader;
+use super::base::DeckReader;
 use super::named::{increasing, SurfaceGroups};
 use super::params::Params;
 
 use crate::cards::{squeeze, Card};
+use crate::deck_line::{DeckLine, Note};
 use crate::joint::{Adjust, ContactKind, ContactPair, Interaction, Overclosure, SurfaceName, Tie};
-use crate::keywords::{verdict, Verdict};
+use crate::keywords::{verdict, KeywordTreatment};
 use crate::numbers::clip;
-use crate::place::{Note, Place};
 use base::Result;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     /// Reads the interactions: a property belongs to the *SURFACE INTERACTION before it.
     pub(super) fn read_interactions(&mut self) -> Result<()> {
         let cards: &'a [Card] = &self.cards.cards;
@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
                     let overclosure = self.behavior(card)?;
                     self.property_of(card, current)?.overclosure = overclosure;
                 }
-                (_, Some((_, Verdict::InInteraction(reason)))) => {
+                (_, Some((_, KeywordTreatment::InInteraction(reason)))) => {
                     let without = card.params.is_empty()
                         && self.cards.rows(card).next().is_some_and(|row| {
                             row.real(self.files, 0, "")
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         surfaces: &SurfaceGroups,
         name: &str,
         may_be_nodes: bool,
-        place: Place,
+        place: DeckLine,
     ) -> Result<SurfaceName> {
         let name = squeeze(name);
         let of_nodes = surfaces.nodes.get(&name);

@@ -1,6 +1,6 @@
 //! Definitions that hold until they are replaced: supports, loads, requests; and the amplitudes of loads.
 
-use crate::place::Place;
+use crate::deck_line::DeckLine;
 use crate::step::{BodyLoadKind, FieldRequest, NodePrint};
 use std::collections::BTreeMap;
 
@@ -34,27 +34,27 @@ pub(super) struct Timed {
 
 /// A value that holds until it is replaced.
 #[derive(Debug, Clone)]
-pub(super) struct Held {
+pub(super) struct HeldValue {
     pub value: f64,
     timed: Option<Timed>,
-    pub place: Place,
+    pub place: DeckLine,
     /// Whether it was given in the present step: then loads are added to it, later they replace it.
     fresh: bool,
 }
 
 /// A load on cells that holds until it is replaced.
 #[derive(Debug, Clone)]
-pub(super) struct Body {
+pub(super) struct HeldCellLoad {
     /// The cells as they are named.
     pub target: String,
     pub cells: Vec<u32>,
     pub kind: BodyLoadKind,
-    pub held: Held,
+    pub held: HeldValue,
 }
 
 /// Which cards the present step has had: what is asked to begin anew does so at the first.
 #[derive(Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct SeenCards {
     pub boundary: bool,
     pub cload: bool,
     pub dload: bool,
@@ -65,29 +65,29 @@ pub(super) struct Seen {
 
 /// The definitions that hold at present.
 #[derive(Debug, Default)]
-pub(super) struct State {
+pub(super) struct DeckState {
     /// How many steps have begun.
     pub number: usize,
     /// The keyword line of the step that is open.
-    pub open: Option<Place>,
+    pub open: Option<DeckLine>,
     /// The procedure of the step that is open: duration, total time at its end.
     pub procedure: Option<(f64, f64)>,
     /// The total time at the end of the last step.
     pub time: f64,
-    pub seen: Seen,
-    pub supports: BTreeMap<(u32, u8), Held>,
-    pub forces: BTreeMap<(u32, u8), Held>,
-    pub pressures: BTreeMap<(u32, u8), Held>,
-    pub bodies: Vec<Body>,
+    pub seen: SeenCards,
+    pub supports: BTreeMap<(u32, u8), HeldValue>,
+    pub forces: BTreeMap<(u32, u8), HeldValue>,
+    pub pressures: BTreeMap<(u32, u8), HeldValue>,
+    pub bodies: Vec<HeldCellLoad>,
     pub prints: Vec<NodePrint>,
     pub fields: Vec<FieldRequest>,
 }
 
 const DIFFERENT: &str = "a load is added to another of the same step that has another amplitude";
 
-impl Held {
-    pub fn new(value: f64, timed: Option<Timed>, place: Place) -> Held {
-        Held {
+impl HeldValue {
+    pub fn new(value: f64, timed: Option<Timed>, place: DeckLine) -> HeldValue {
+        HeldValue {
             value,
             timed,
             place,
@@ -98,7 +98,7 @@ impl Held {
     /// Adds it to what the present step has there, or replaces what an earlier step has left.
     pub fn add_to(
         self,
-        all: &mut BTreeMap<(u32, u8), Held>,
+        all: &mut BTreeMap<(u32, u8), HeldValue>,
         key: (u32, u8),
     ) -> std::result::Result<(), &'static str> {
         match all.get_mut(&key) {
@@ -110,7 +110,7 @@ impl Held {
         }
     }
 
-    fn add(&mut self, more: Held) -> std::result::Result<(), &'static str> {
+    fn add(&mut self, more: HeldValue) -> std::result::Result<(), &'static str> {
         if !self.fresh {
             *self = more;
             return Ok(());
@@ -139,14 +139,14 @@ impl Held {
     }
 }
 
-impl Body {
+impl HeldCellLoad {
     /// Adds it to the same load of the present step, or replaces that of an earlier one.
     pub fn add_to(
         self,
-        all: &mut Vec<Body>,
+        all: &mut Vec<HeldCellLoad>,
         same: fn(&BodyLoadKind, &BodyLoadKind) -> bool,
     ) -> std::result::Result<(), &'static str> {
-        let known = |b: &&mut Body| b.target == self.target && same(&b.kind, &self.kind);
+        let known = |b: &&mut HeldCellLoad| b.target == self.target && same(&b.kind, &self.kind);
         match all.iter_mut().find(known) {
             Some(before) => before.held.add(self.held),
             None => {

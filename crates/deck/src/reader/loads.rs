@@ -1,18 +1,18 @@
 //! *AMPLITUDE, *BOUNDARY, *CLOAD, *DLOAD and *DSLOAD.
 
-use super::base::Reader;
-use super::held::{Amplitude, Body, Held, Timed};
+use super::base::DeckReader;
+use super::held::{Amplitude, HeldCellLoad, HeldValue, Timed};
 use super::named::increasing;
 use super::params::Params;
-use crate::cards::{squeeze, Card, Row};
-use crate::element::Model;
+use crate::cards::{squeeze, Card, DataLine};
+use crate::element::ElementModel;
 use crate::model::unit;
 use crate::numbers::clip;
 use crate::step::BodyLoadKind;
 use base::linalg::vec3::{cross, minus, norm};
 use base::Result;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     pub(super) fn amplitude(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
         let name = params.required("NAME")?;
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
             self.spend(nodes.len() * dofs.len().max(1), row.place)?;
             for node in nodes {
                 for &dof in &dofs {
-                    let held = Held::new(value, timed, row.place);
+                    let held = HeldValue::new(value, timed, row.place);
                     self.state.supports.insert((node, dof), held);
                 }
             }
@@ -122,7 +122,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The directions that a line of *BOUNDARY holds, from 0, and the value.
-    fn directions(&self, row: &Row) -> Result<(Vec<u8>, f64)> {
+    fn directions(&self, row: &DataLine) -> Result<(Vec<u8>, f64)> {
         let named = match squeeze(row.field(1)).as_str() {
             "ENCASTRE" | "PINNED" => Some(vec![0, 1, 2]),
             "XSYMM" => Some(vec![0]),
@@ -192,7 +192,7 @@ impl<'a> Reader<'a> {
             self.spend(nodes.len(), row.place)?;
             self.once(&row, &nodes)?;
             for node in nodes {
-                let held = Held::new(value, timed, row.place);
+                let held = HeldValue::new(value, timed, row.place);
                 let added = held.add_to(&mut self.state.forces, (node, dof as u8 - 1));
                 added.map_err(|message| self.files.error(row.place, message))?;
             }
@@ -240,7 +240,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The sides of the surface in the first field.
-    fn sides_of_surface(&self, row: &Row) -> Result<Vec<(u32, u8)>> {
+    fn sides_of_surface(&self, row: &DataLine) -> Result<Vec<(u32, u8)>> {
         let name = squeeze(row.field(0));
         let Some(set) = self.side_surfaces.get(&name) else {
             let message = format!("there is no surface of sides of elements {}", clip(&name));
@@ -251,7 +251,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The error if a load is put on something twice by one line: CalculiX adds it twice, Abaqus once.
-    fn once(&self, row: &Row, members: &[u32]) -> Result<()> {
+    fn once(&self, row: &DataLine, members: &[u32]) -> Result<()> {
         if increasing(members).len() == members.len() {
             return Ok(());
         }
@@ -262,19 +262,24 @@ impl<'a> Reader<'a> {
         Err(self.files.error(row.place, message))
     }
 
-    fn pressure(&mut self, row: &Row, sides: Vec<(u32, u8)>, timed: Option<Timed>) -> Result<()> {
+    fn pressure(
+        &mut self,
+        row: &DataLine,
+        sides: Vec<(u32, u8)>,
+        timed: Option<Timed>,
+    ) -> Result<()> {
         row.at_most(self.files, 3, "a pressure")?;
         let value = row.real(self.files, 2, "a pressure")?;
         self.spend(sides.len(), row.place)?;
         for side in sides {
-            let held = Held::new(value, timed, row.place);
+            let held = HeldValue::new(value, timed, row.place);
             let added = held.add_to(&mut self.state.pressures, side);
             added.map_err(|message| self.files.error(row.place, message))?;
         }
         Ok(())
     }
 
-    fn body_load(&mut self, row: &Row, label: &str, timed: Option<Timed>) -> Result<()> {
+    fn body_load(&mut self, row: &DataLine, label: &str, timed: Option<Timed>) -> Result<()> {
         let cells = increasing(&self.target_cells(row, 0)?);
         let value = row.real(self.files, 2, "its size")?;
         let fail = |message: &str| Err(self.files.error(row.place, message));
@@ -298,11 +303,13 @@ impl<'a> Reader<'a> {
             let direction = unit(direction);
             let is_axis = |axis: [f64; 3]| norm(cross(direction, axis)) < 1e-10;
             match self.deck.model() {
-                Model::Solid => {}
-                Model::Axisymmetric if !is_axis([0.0, 1.0, 0.0]) || point[0] != 0.0 => {
+                ElementModel::Solid => {}
+                ElementModel::Axisymmetric if !is_axis([0.0, 1.0, 0.0]) || point[0] != 0.0 => {
                     return fail("axisymmetric bodies turn about the y axis only");
                 }
-                Model::PlaneStrain | Model::PlaneStress if !is_axis([0.0, 0.0, 1.0]) => {
+                ElementModel::PlaneStrain | ElementModel::PlaneStress
+                    if !is_axis([0.0, 0.0, 1.0]) =>
+                {
                     return fail("plane bodies turn about axes along z only");
                 }
                 _ => {}
@@ -321,11 +328,11 @@ impl<'a> Reader<'a> {
         {
             return fail("a set cannot turn about two axes; CalculiX would ignore this one");
         }
-        let body = Body {
+        let body = HeldCellLoad {
             target,
             cells,
             kind,
-            held: Held::new(value, timed, row.place),
+            held: HeldValue::new(value, timed, row.place),
         };
         let added = body.add_to(&mut self.state.bodies, same_load);
         added.map_err(|message| self.files.error(row.place, message))

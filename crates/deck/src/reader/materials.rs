@@ -1,18 +1,18 @@
 //! *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION, *INITIAL CONDITIONS.
 
-use super::base::Reader;
+use super::base::DeckReader;
 use super::named::increasing;
 use super::params::Params;
 
 use crate::cards::Card;
-use crate::element::Model;
-use crate::keywords::{verdict, Verdict};
-use crate::model::{Material, Section};
+use crate::deck_line::Note;
+use crate::element::ElementModel;
+use crate::keywords::{verdict, KeywordTreatment};
+use crate::model::{DeckMaterial, Section};
 use crate::numbers::clip;
-use crate::place::Note;
 use base::Result;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     /// Reads the materials: a property belongs to the *MATERIAL before it.
     pub(super) fn read_materials(&mut self) -> Result<()> {
         let cards: &'a [Card] = &self.cards.cards;
@@ -28,7 +28,7 @@ impl<'a> Reader<'a> {
                     }
                     self.current(card, current)?.density = Some(density);
                 }
-                (_, Some((_, Verdict::InMaterial(reason)))) => {
+                (_, Some((_, KeywordTreatment::InMaterial(reason)))) => {
                     let note = Self::note(card, card.place, reason);
                     let material = self.current(card, current)?;
                     material.refused.get_or_insert(note);
@@ -50,7 +50,7 @@ impl<'a> Reader<'a> {
                 format!("the material {} is defined before", clip(name)),
             );
         }
-        self.deck.materials.push(Material {
+        self.deck.materials.push(DeckMaterial {
             name: name.to_string(),
             elastic: None,
             density: None,
@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The material to which a property belongs.
-    fn current(&mut self, card: &Card, current: Option<usize>) -> Result<&mut Material> {
+    fn current(&mut self, card: &Card, current: Option<usize>) -> Result<&mut DeckMaterial> {
         match current {
             Some(m) => Ok(&mut self.deck.materials[m]),
             None => self.error(card, "there is no *MATERIAL before it"),
@@ -170,7 +170,10 @@ impl<'a> Reader<'a> {
                 .files
                 .error(row.place, "a section has one line of data at most"));
         }
-        if matches!(self.deck.model(), Model::Solid | Model::Axisymmetric) {
+        if matches!(
+            self.deck.model(),
+            ElementModel::Solid | ElementModel::Axisymmetric
+        ) {
             thickness = 1.0;
         }
         let section = self.deck.sections.len() as u32;

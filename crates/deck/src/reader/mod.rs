@@ -16,17 +16,17 @@ mod rows;
 mod sets;
 mod steps;
 
-pub(super) use base::Reader;
+pub(super) use base::DeckReader;
 
 use super::cards::{Card, Cards};
-use super::keywords::{verdict, Verdict};
+use super::deck_line::Note;
+use super::keywords::{verdict, KeywordTreatment};
 use super::model::Deck;
 use super::numbers::clip;
-use super::place::Note;
 use ::base::Result;
 use mesh::MeshFile;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     /// The mesh of the deck; the rest is not looked at.
     pub fn mesh(mut self) -> Result<MeshFile> {
         self.check_keywords()?;
@@ -85,10 +85,12 @@ impl<'a> Reader<'a> {
                 Err(self.files.error(card.place, message))
             };
             match verdict(&card.keyword) {
-                Some((name, Verdict::RefusedMesh(reason))) => return refused(name, reason),
+                Some((name, KeywordTreatment::RefusedMesh(reason))) => {
+                    return refused(name, reason)
+                }
                 _ if !self.whole => {}
-                Some((name, Verdict::Refused(reason))) => return refused(name, reason),
-                Some((name, Verdict::Ignored(reason))) => self.deck.ignored.push(Note {
+                Some((name, KeywordTreatment::Refused(reason))) => return refused(name, reason),
+                Some((name, KeywordTreatment::Ignored(reason))) => self.deck.ignored.push(Note {
                     keyword: format!("*{name}"),
                     place: card.place,
                     reason: reason.to_string(),

@@ -1,29 +1,29 @@
 //! Sets by their names.
 
-use crate::place::Place;
+use crate::deck_line::DeckLine;
 use std::collections::HashMap;
 
 /// Named sets with their members in the order of the deck, in which CalculiX prints them.
 #[derive(Default)]
 pub(super) struct Sets {
     pub by_name: HashMap<String, usize>,
-    pub sets: Vec<Set>,
+    pub sets: Vec<DeckSet>,
 }
 
 /// A set.
-pub(super) struct Set {
+pub(super) struct DeckSet {
     pub name: String,
-    pub place: Place,
+    pub place: DeckLine,
     pub members: Vec<u32>,
 }
 
 impl Sets {
     /// The set of that name, a new one or one that is complemented.
-    pub fn open(&mut self, name: &str, place: Place) -> usize {
+    pub fn open(&mut self, name: &str, place: DeckLine) -> usize {
         let next = self.sets.len();
         let set = *self.by_name.entry(name.to_string()).or_insert(next);
         if set == next {
-            self.sets.push(Set {
+            self.sets.push(DeckSet {
                 name: name.to_string(),
                 place,
                 members: Vec::new(),
@@ -37,7 +37,7 @@ impl Sets {
     }
 
     /// The members of the set of that name; sets without members do not exist, as in CalculiX.
-    pub fn get(&self, name: &str) -> Option<&Set> {
+    pub fn get(&self, name: &str) -> Option<&DeckSet> {
         let set = &self.sets[*self.by_name.get(name)?];
         (!set.members.is_empty()).then_some(set)
     }

@@ -1,15 +1,15 @@
 //! *NODE and *ELEMENT.
 
-use super::base::{title, Reader};
+use super::base::{title, DeckReader};
 use super::params::Params;
-use crate::cards::{Card, Row};
-use crate::element::{shape, what_is, ElementType, Model};
+use crate::cards::{Card, DataLine};
+use crate::element::{shape, what_is, ElementModel, ElementType};
 use crate::numbers::clip;
 use base::Result;
 use elements::kind::CellKind;
 use mesh::file::FARTHEST;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     pub(super) fn node(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
         let set = params.name("NSET")?;
@@ -133,9 +133,9 @@ impl<'a> Reader<'a> {
                 return Ok(element.kind());
             };
             let of = |model| match model {
-                Model::PlaneStrain | Model::PlaneStress => "plane",
-                Model::Solid => "solid",
-                Model::Axisymmetric => "axisymmetric",
+                ElementModel::PlaneStrain | ElementModel::PlaneStress => "plane",
+                ElementModel::Solid => "solid",
+                ElementModel::Axisymmetric => "axisymmetric",
             };
             if of(first.model()) == of(element.model()) {
                 return Ok(element.kind());
@@ -155,7 +155,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the nodes of an element that `row` has from field `from` on.
-    fn element_nodes(&self, row: &Row, from: usize, id: u64, nodes: &mut Vec<u32>) -> Result<()> {
+    fn element_nodes(
+        &self,
+        row: &DataLine,
+        from: usize,
+        id: u64,
+        nodes: &mut Vec<u32>,
+    ) -> Result<()> {
         for k in from..row.fields.len() {
             let node = row.whole(self.files, k, "the number of a node")?;
             let Some(place) = self.nodes.place(node) else {
@@ -180,7 +186,7 @@ impl<'a> Reader<'a> {
             .iter()
             .flatten()
             .fold(0.0_f64, |m, x| m.max(x.abs()));
-        let axisymmetric = self.deck.elements[0].model() == Model::Axisymmetric;
+        let axisymmetric = self.deck.elements[0].model() == ElementModel::Axisymmetric;
         for c in 0..mesh.cells.len() {
             for &node in mesh.cells.nodes(c) {
                 let point = &mut mesh.points[node as usize];

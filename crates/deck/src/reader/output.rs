@@ -1,6 +1,6 @@
 //! *NODE PRINT, *NODE FILE, *EL FILE and their likes, *RESTART.
 
-use super::base::Reader;
+use super::base::DeckReader;
 use super::params::Params;
 
 use crate::cards::{squeeze, Card};
@@ -8,7 +8,7 @@ use crate::numbers::clip;
 use crate::step::{FieldRequest, NodePrint, Printed, Totals};
 use base::Result;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     pub(super) fn node_print(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
         let Some(nset) = params.name("NSET")? else {

@@ -2,8 +2,8 @@
 
 use super::base::title;
 use crate::cards::Card;
+use crate::deck_line::Files;
 use crate::numbers::{clip, real, whole};
-use crate::place::Files;
 use base::Result;
 
 /// Names have at most that many letters.

@@ -1,19 +1,19 @@
 //! *TRANSFORM, *EQUATION and the *MPC that are plain equations.
 
-use super::base::Reader;
+use super::base::DeckReader;
 use super::params::Params;
 
-use crate::cards::{squeeze, Card, Row};
-use crate::model::{Equation, Term, Transform};
+use crate::cards::{squeeze, Card, DataLine};
+use crate::deck_line::DeckLine;
+use crate::model::{DeckEquation, Term, Transform};
 use crate::numbers::clip;
-use crate::place::Place;
 use base::linalg::vec3::{cross, dot, minus, norm};
 use base::Result;
 
 /// The part of the length of a vector that counts as zero.
 const NOTHING: f64 = 1e-10;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     pub(super) fn transform(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
         let name = params.required("NSET")?;
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The term that begins in field `k`: nodes, direction, factor.
-    fn term(&mut self, row: &Row, k: usize) -> Result<(Vec<u32>, u8, f64)> {
+    fn term(&mut self, row: &DataLine, k: usize) -> Result<(Vec<u32>, u8, f64)> {
         let nodes = self.target_nodes(row, k)?;
         let dof = row.whole(self.files, k + 1, "a direction")?;
         let factor = row.real(self.files, k + 2, "a factor")?;
@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the equations of terms of sets: one for each node of the sets, which are of one size.
-    fn expand(&mut self, terms: &[(Vec<u32>, u8, f64)], place: Place) -> Result<()> {
+    fn expand(&mut self, terms: &[(Vec<u32>, u8, f64)], place: DeckLine) -> Result<()> {
         if terms[0].2 == 0.0 {
             return Err(self.files.error(place, "the factor of the first term is 0"));
         }
@@ -146,7 +146,7 @@ impl<'a> Reader<'a> {
                 dof: *dof,
                 factor: *factor,
             });
-            self.deck.equations.push(Equation {
+            self.deck.equations.push(DeckEquation {
                 terms: terms.collect(),
                 place,
             });
@@ -202,7 +202,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The displacement of the first node is that of the second, or that between the second and the third.
-    fn equal(&mut self, nodes: &[u32], place: Place) -> Result<()> {
+    fn equal(&mut self, nodes: &[u32], place: DeckLine) -> Result<()> {
         let at = |n: u32| self.deck.mesh.points[n as usize];
         let shares = match *nodes {
             [p, a, b] => {
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
             let factors = std::iter::once(1.0).chain(shares.iter().map(|s| -s));
             let terms = nodes.iter().zip(factors);
             let terms = terms.map(|(&node, factor)| Term { node, dof, factor });
-            self.deck.equations.push(Equation {
+            self.deck.equations.push(DeckEquation {
                 terms: terms.collect(),
                 place,
             });

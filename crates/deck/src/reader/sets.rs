@@ -1,17 +1,17 @@
 //! *NSET, *ELSET, *SURFACE, and the groups that they become.
 
-use super::base::{title, Reader};
+use super::base::{title, DeckReader};
 use super::ids::Ids;
-use super::named::{increasing, Set, Sets, SurfaceGroups};
+use super::named::{increasing, DeckSet, Sets, SurfaceGroups};
 use super::params::Params;
-use crate::cards::{squeeze, Card, Row};
+use crate::cards::{squeeze, Card, DataLine};
+use crate::deck_line::{DeckLine, Files, Note};
 use crate::numbers::{clip, is_whole};
-use crate::place::{Files, Note, Place};
 use base::Result;
-use mesh::{Group, Members};
+use mesh::{Members, MeshGroup};
 use std::collections::HashMap;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     pub(super) fn nset(&mut self, card: &'a Card) -> Result<()> {
         let (name, generate) = self.set_params(card, "NSET")?;
         let set = self.nsets.open(name, card.place);
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The side that a label such as S3 or P3 in field `k` names, which all `cells` must have.
-    pub(super) fn side(&self, row: &Row, k: usize, letter: char, cells: &[u32]) -> Result<u8> {
+    pub(super) fn side(&self, row: &DataLine, k: usize, letter: char, cells: &[u32]) -> Result<u8> {
         let label = squeeze(row.field(k));
         let number = label
             .strip_prefix(letter)
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The nodes that field `k` names by number or as a set.
-    pub(super) fn target_nodes(&self, row: &Row, k: usize) -> Result<Vec<u32>> {
+    pub(super) fn target_nodes(&self, row: &DataLine, k: usize) -> Result<Vec<u32>> {
         target(
             self.files,
             &self.nodes,
@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The cells that field `k` names by number or as a set.
-    pub(super) fn target_cells(&self, row: &Row, k: usize) -> Result<Vec<u32>> {
+    pub(super) fn target_cells(&self, row: &DataLine, k: usize) -> Result<Vec<u32>> {
         target(
             self.files,
             &self.cells,
@@ -144,17 +144,17 @@ impl<'a> Reader<'a> {
 
     /// Makes groups of sets and surfaces, in the order of the file.
     pub(super) fn make_groups(&mut self) {
-        let sides = |s: &Set| {
+        let sides = |s: &DeckSet| {
             let mut sides: Vec<(u32, u8)> =
                 s.members.iter().map(|m| (m / 8, (m % 8) as u8)).collect();
             sides.sort_unstable();
             sides.dedup();
             vec![Members::Sides(sides)]
         };
-        let nodes = |s: &Set| vec![Members::Nodes(increasing(&s.members))];
-        let mut groups: Vec<(Place, Group)> = Vec::new();
+        let nodes = |s: &DeckSet| vec![Members::Nodes(increasing(&s.members))];
+        let mut groups: Vec<(DeckLine, MeshGroup)> = Vec::new();
         let mut empty: Vec<Note> = Vec::new();
-        let mut add = |keyword: &str, sets: &Sets, members: &dyn Fn(&Set) -> Vec<Members>| {
+        let mut add = |keyword: &str, sets: &Sets, members: &dyn Fn(&DeckSet) -> Vec<Members>| {
             for set in &sets.sets {
                 if set.members.is_empty() {
                     empty.push(Note {
@@ -166,7 +166,7 @@ impl<'a> Reader<'a> {
                 }
                 groups.extend(members(set).into_iter().map(|members| {
                     let name = set.name.clone();
-                    (set.place, Group { name, members })
+                    (set.place, MeshGroup { name, members })
                 }));
             }
         };
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The members from the first number to the last, by steps.
-fn generated(files: &Files, ids: &Ids, row: &Row, what: &str) -> Result<Vec<u32>> {
+fn generated(files: &Files, ids: &Ids, row: &DataLine, what: &str) -> Result<Vec<u32>> {
     row.at_most(files, 3, "a line of GENERATE")?;
     let first = row.whole(files, 0, "the first number")?;
     let last = row.whole(files, 1, "the last number")?;
@@ -252,7 +252,7 @@ fn listed(
     ids: &Ids,
     sets: &Sets,
     (into, most): (usize, usize),
-    row: &Row,
+    row: &DataLine,
     (one, a_one, set, _): (&str, &str, &str, &str),
 ) -> Result<Vec<u32>> {
     let mut found = Vec::new();
@@ -273,7 +273,7 @@ fn target(
     files: &Files,
     ids: &Ids,
     sets: &Sets,
-    row: &Row,
+    row: &DataLine,
     k: usize,
     (one, a_one, set): (&str, &str, &str),
 ) -> Result<Vec<u32>> {

@@ -1,14 +1,14 @@
 //! *STEP, *STATIC and *END STEP: what holds at the end of each step.
 
-use super::base::Reader;
-use super::held::Seen;
+use super::base::DeckReader;
+use super::held::SeenCards;
 use super::params::Params;
 use crate::cards::Card;
 use crate::numbers::clip;
-use crate::step::{BodyLoad, BodyLoadKind, NodeForce, Pressure, Step, Support};
+use crate::step::{BodyLoad, BodyLoadKind, DeckStep, NodeForce, Pressure, Support};
 use base::Result;
 
-impl<'a> Reader<'a> {
+impl<'a> DeckReader<'a> {
     /// The error if a card that belongs before all steps stands after one.
     pub(super) fn before_steps(&self, card: &Card) -> Result<()> {
         match self.state.number {
@@ -51,7 +51,7 @@ impl<'a> Reader<'a> {
         self.state.number += 1;
         self.state.open = Some(card.place);
         self.state.procedure = None;
-        self.state.seen = Seen::default();
+        self.state.seen = SeenCards::default();
         Ok(())
     }
 
@@ -115,13 +115,13 @@ impl<'a> Reader<'a> {
         self.spend(entries, place)?;
         let (state, amplitudes) = (&mut self.state, &self.amplitudes);
         state.time = time;
-        let mut step = Step {
+        let mut step = DeckStep {
             place,
             duration,
             time,
             prints: state.prints.clone(),
             fields: state.fields.clone(),
-            ..Step::default()
+            ..DeckStep::default()
         };
         for (&(node, dof), held) in &mut state.supports {
             let value = held.end(amplitudes, duration, time);

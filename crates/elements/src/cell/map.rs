@@ -4,7 +4,7 @@ use super::reference::{for_each, q1_point, Element, ReferencePoint, Rule};
 use base::linalg::small::invert;
 
 /// A quadrature point of a cell; what a cell of the plane does not have is zero.
-pub(super) struct Sample {
+pub(super) struct CellSample {
     pub point: [f64; 3],
     /// N_a.
     pub shape: [f64; 8],
@@ -20,7 +20,7 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
     points: &[[f64; 3]],
     element: Element,
     rule: Rule,
-    mut f: impl FnMut(&Sample),
+    mut f: impl FnMut(&CellSample),
 ) {
     let points = corners::<N>(points);
     for_each::<D, N>(element, rule, |reference| {
@@ -37,7 +37,7 @@ pub(super) fn for_each_sample_of(
     points: &[[f64; 3]],
     element: Element,
     rule: Rule,
-    f: impl FnMut(&Sample),
+    f: impl FnMut(&CellSample),
 ) {
     match dim {
         2 => for_each_sample::<2, 4>(points, element, rule, f),
@@ -47,7 +47,7 @@ pub(super) fn for_each_sample_of(
 }
 
 /// The middle of the unit cell, for Q1.
-pub(super) fn centre_sample(dim: usize, points: &[[f64; 3]]) -> Sample {
+pub(super) fn centre_sample(dim: usize, points: &[[f64; 3]]) -> CellSample {
     match dim {
         2 => sample(corners::<4>(points), &q1_point([0.5; 2], 1.0)),
         _ => sample(corners::<8>(points), &q1_point([0.5; 3], 1.0)),
@@ -64,7 +64,7 @@ fn corners<const N: usize>(points: &[[f64; 3]]) -> &[[f64; 3]; N] {
 fn sample<const D: usize, const N: usize>(
     points: &[[f64; 3]; N],
     reference: &ReferencePoint<D, N>,
-) -> Sample {
+) -> CellSample {
     let (det, inverse) = invert(&jacobian(points, reference));
     let (mut shape, mut gradient) = ([0.0; 8], [[0.0; 8]; 3]);
     shape[..N].copy_from_slice(&reference.shape);
@@ -75,8 +75,8 @@ fn sample<const D: usize, const N: usize>(
             }
         }
     }
-    Sample {
-        point: place(points, &reference.shape),
+    CellSample {
+        point: interpolate_vertex_position(points, &reference.shape),
         shape,
         gradient,
         weight: reference.weight * det,
@@ -85,7 +85,10 @@ fn sample<const D: usize, const N: usize>(
 
 /// Σ N_a x_a.
 #[inline]
-pub(super) fn place<const N: usize>(points: &[[f64; 3]; N], shape: &[f64; N]) -> [f64; 3] {
+pub(super) fn interpolate_vertex_position<const N: usize>(
+    points: &[[f64; 3]; N],
+    shape: &[f64; N],
+) -> [f64; 3] {
     let mut out = [0.0; 3];
     for (point, n) in points.iter().zip(shape) {
         for i in 0..3 {

@@ -1,6 +1,6 @@
 //! Sides of cells: tractions, pressures, areas and normals.
 
-use super::map::place;
+use super::map::interpolate_vertex_position;
 use super::reference::{for_each, ReferencePoint, Rule};
 use super::Element;
 use base::linalg::vec3::{cross, norm};
@@ -140,7 +140,12 @@ fn for_each_point(
             for_each::<1, 2>(element, Rule::Load, |r| {
                 let [[x, y, _]] = tangents(points, r);
                 let normal = [outward * y, -outward * x, 0.0];
-                f(place(points, &r.shape), normal, &r.shape, r.weight);
+                f(
+                    interpolate_vertex_position(points, &r.shape),
+                    normal,
+                    &r.shape,
+                    r.weight,
+                );
             });
         }
         3 => {
@@ -148,7 +153,12 @@ fn for_each_point(
             for_each::<2, 4>(element, Rule::Load, |r| {
                 let [s, t] = tangents(points, r);
                 let normal = cross(s, t).map(|v| outward * v);
-                f(place(points, &r.shape), normal, &r.shape, r.weight);
+                f(
+                    interpolate_vertex_position(points, &r.shape),
+                    normal,
+                    &r.shape,
+                    r.weight,
+                );
             });
         }
         _ => panic!("cells have dimension 2 or 3, not {dim}"),
@@ -166,7 +176,9 @@ fn tangents<const D: usize, const N: usize>(
     points: &[[f64; 3]; N],
     reference: &ReferencePoint<D, N>,
 ) -> [[f64; 3]; D] {
-    reference.slope.map(|slope| place(points, &slope))
+    reference
+        .slope
+        .map(|slope| interpolate_vertex_position(points, &slope))
 }
 
 #[cfg(test)]

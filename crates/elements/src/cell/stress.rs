@@ -1,6 +1,6 @@
 //! Strain and stress at the centre of a cell, for output.
 
-use super::map::{centre_sample, for_each_sample_of, Sample};
+use super::map::{centre_sample, for_each_sample_of, CellSample};
 use super::reference::Rule;
 use super::{Element, Material, Plane};
 
@@ -98,7 +98,7 @@ pub fn centre_stress(
 
 /// Adds `weight` times ∇u, `[i][j]` = ∂u_i/∂x_j.
 fn add_gradient(
-    s: &Sample,
+    s: &CellSample,
     weight: f64,
     components: usize,
     nodal: &[f64],

@@ -5,9 +5,9 @@
 //! [`body_load`](super::body_load) or [`side_load`](super::side_load). The strain around is ε_θθ = u_r/r, the component
 //! zz of stresses. The only rigid motion is that along the axis.
 
-use super::map::{for_each_sample, place, relative};
+use super::map::{for_each_sample, interpolate_position, relative};
 use super::quadrature::Purpose;
-use super::table::{table, Table};
+use super::table::{table, ShapeTable};
 use crate::cell::{Material, Moduli, Plane};
 use crate::kind::CellKind;
 use std::f64::consts::TAU;
@@ -29,8 +29,8 @@ pub(super) fn rule(kind: CellKind, purpose: Purpose) -> Purpose {
 }
 
 /// 1/r at a point of the rule.
-pub(super) fn per_radius(points: &[[f64; 3]], table: &Table, index: usize) -> f64 {
-    1.0 / place(points, table.values(index))[0]
+pub(super) fn per_radius(points: &[[f64; 3]], table: &ShapeTable, index: usize) -> f64 {
+    1.0 / interpolate_position(points, table.values(index))[0]
 }
 
 /// The stiffness of the ring.
@@ -51,7 +51,7 @@ pub(super) fn stiffness(
     }
 }
 
-fn ring<const N: usize>(points: &[[f64; 3]], table: &Table, moduli: Moduli, out: &mut [f64]) {
+fn ring<const N: usize>(points: &[[f64; 3]], table: &ShapeTable, moduli: Moduli, out: &mut [f64]) {
     let n = 2 * N;
     let (mut mean, mut volume) = ([[0.0; N]; 2], 0.0);
     out.fill(0.0);

@@ -2,7 +2,7 @@
 
 use super::axial::{is_axial, per_radius};
 use super::integration::moduli;
-use super::map::{by_kind, for_each_sample, place, relative};
+use super::map::{by_kind, for_each_sample, interpolate_position, relative};
 use super::quadrature::Purpose;
 use super::table::table;
 use super::Integration;
@@ -58,7 +58,7 @@ fn squares<const D: usize, const N: usize>(
     let axial = is_axial(D, material);
     for_each_sample::<D, N>(&relative(points), table, |s| {
         let values = table.values(s.index);
-        let (u, slope) = exact(place(points, values));
+        let (u, slope) = exact(interpolate_position(points, values));
         let (mut value, mut gradient) = (u.map(|v| -v), slope.map(|row| row.map(|v| -v)));
         for (a, node) in nodal.chunks_exact(components).enumerate() {
             for (i, &x) in node.iter().enumerate() {

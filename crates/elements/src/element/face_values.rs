@@ -1,6 +1,6 @@
 //! Shape functions of sides at any point, with the position and the tangents there.
 
-use super::shape::{reference_nodes, shape};
+use super::shape_functions::{reference_nodes, shape};
 use crate::kind::CellKind;
 
 /// A point of a side.

@@ -6,7 +6,7 @@
 //! parallelepipeds resists linear displacements. A quadrilateral is a thick layer of such hexahedra, as CPE4R.
 
 use super::map::{for_each_sample, relative};
-use super::products::Products;
+use super::products::GradientProducts;
 use super::quadrature::Purpose;
 use super::table::table;
 use crate::cell::{Element, Material};
@@ -48,7 +48,7 @@ fn cell<const D: usize, const N: usize, const L: usize>(
     out: &mut [f64],
 ) {
     let (mean, volume) = mean_gradient::<D, N>(kind, points);
-    let mut products = Products::<D, N, L>::new();
+    let mut products = GradientProducts::<D, N, L>::new();
     products.add(volume, &mean);
     products.stiffness(material.moduli(D, Element::Q1), out);
 

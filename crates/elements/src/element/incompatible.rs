@@ -5,8 +5,8 @@
 //! Beresford and Wilson 1976): then constant stresses do no work on them, and the patch test holds on any cell. This
 //! is C3D8I of CalculiX.
 
-use super::map::{for_each_sample, jacobian, relative, slopes, Sample};
-use super::products::Products;
+use super::map::{for_each_sample, jacobian, relative, slopes, ElementSample};
+use super::products::GradientProducts;
 use super::quadrature::Purpose;
 use super::table::table;
 use crate::cell::Moduli;
@@ -45,7 +45,7 @@ fn condensed<const D: usize, const N: usize, const M: usize, const L: usize>(
     out: &mut [f64],
 ) {
     let (n, m) = (D * N, D * M);
-    let k = Eliminated::new::<D, N, M, L>(kind, points, moduli);
+    let k = CondensedModes::new::<D, N, M, L>(kind, points, moduli);
     for i in 0..n {
         for j in i..n {
             let inner: f64 = (n..m).map(|q| k.0[q][i] * k.0[q][j]).sum();
@@ -63,7 +63,8 @@ fn gradients<const D: usize, const N: usize, const M: usize, const L: usize>(
     nodal: &[f64],
     mut f: impl FnMut(usize, [[f64; 3]; 3]),
 ) {
-    let all = Eliminated::new::<D, N, M, L>(kind, points, moduli).with_modes(D * N, D * M, nodal);
+    let all =
+        CondensedModes::new::<D, N, M, L>(kind, points, moduli).with_modes(D * N, D * M, nodal);
     for_each_extended::<D, N, M>(kind, points, |s| {
         let mut gradient = [[0.0; 3]; 3];
         for (a, node) in all[..D * M].chunks_exact(D).enumerate() {
@@ -79,15 +80,15 @@ fn gradients<const D: usize, const N: usize, const M: usize, const L: usize>(
 
 /// The stiffness of nodes u and modes m, where the rows of the modes are replaced: by L⁻¹ K_mu in the columns of the
 /// nodes, by L in those of the modes, with K_mm = L Lᵀ.
-struct Eliminated([[f64; MOST]; MOST]);
+struct CondensedModes([[f64; MOST]; MOST]);
 
-impl Eliminated {
+impl CondensedModes {
     fn new<const D: usize, const N: usize, const M: usize, const L: usize>(
         kind: CellKind,
         points: &[[f64; 3]],
         moduli: Moduli,
-    ) -> Eliminated {
-        let mut products = Products::<D, M, L>::new();
+    ) -> CondensedModes {
+        let mut products = GradientProducts::<D, M, L>::new();
         for_each_extended::<D, N, M>(kind, points, |s| products.add(s.weight, &s.gradient));
         let (n, m) = (D * N, D * M);
         let mut flat = [0.0; MOST * MOST];
@@ -107,7 +108,7 @@ impl Eliminated {
                 k[q][j] = (k[q][j] - known) / k[q][q];
             }
         }
-        Eliminated(k)
+        CondensedModes(k)
     }
 
     /// The values of the nodes and of the modes, −K_mm⁻¹ K_mu u.
@@ -128,7 +129,7 @@ impl Eliminated {
 fn for_each_extended<const D: usize, const N: usize, const M: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
-    mut f: impl FnMut(&Sample<D, M>),
+    mut f: impl FnMut(&ElementSample<D, M>),
 ) {
     let at = relative::<D, N>(points);
     let middle = slopes::<D, N>(table(kind, Purpose::Centre), 0);
@@ -143,7 +144,7 @@ fn for_each_extended<const D: usize, const N: usize, const M: usize>(
                 row[N + j] = -2.0 * full.at[s.index][j] * inverse[j][i] * shrink;
             }
         }
-        f(&Sample {
+        f(&ElementSample {
             index: s.index,
             gradient,
             weight: s.weight,

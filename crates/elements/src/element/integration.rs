@@ -37,7 +37,7 @@ pub enum Integration {
     ///
     /// A single [`CellKind::Quad8`], [`CellKind::Hex20`] or [`CellKind::Wedge6`] then has motions without energy that
     /// are not rigid: 1, 6 and 1 of them. Mostly they do not fit together on neighbours; in columns of single wedges or
-    /// hexahedra some do (`crates/scene/src/assembly/slack.rs`).
+    /// hexahedra some do (`crates/scene/src/assembly/zero_energy.rs`).
     Reduced,
     /// Incompatible modes, condensed (Wilson, Taylor): bending without locking on [`CellKind::Quad4`] and
     /// [`CellKind::Hex8`], elastic only. C3D8I.

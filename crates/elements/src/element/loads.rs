@@ -1,9 +1,9 @@
 //! Forces in a cell, its volume and a point inside.
 
 use super::integration::Integration;
-use super::map::{by_kind, jacobian, place, relative, slopes};
+use super::map::{by_kind, interpolate_position, jacobian, relative, slopes};
 use super::quadrature::Purpose;
-use super::table::{table, Table};
+use super::table::{table, ShapeTable};
 use crate::kind::CellKind;
 use base::linalg::small::invert;
 
@@ -54,7 +54,7 @@ pub fn body_load_by<F>(
     let table = table(kind, purpose);
     for_each_weight(kind, points, table, |index, weight| {
         let values = table.values(index);
-        let force = f(place(points, values)).map(|value| value * weight);
+        let force = f(interpolate_position(points, values)).map(|value| value * weight);
         for (node, shape) in out.chunks_exact_mut(components).zip(values) {
             for (entry, value) in node.iter_mut().zip(force) {
                 *entry += value * shape;
@@ -82,7 +82,7 @@ pub fn volume(kind: CellKind, dim: usize, points: &[[f64; 3]]) -> f64 {
 /// When the cell has another number of nodes.
 pub fn middle(kind: CellKind, points: &[[f64; 3]]) -> [f64; 3] {
     assert_eq!(points.len(), kind.nodes(), "a {}", kind.name());
-    place(points, table(kind, Purpose::Centre).values(0))
+    interpolate_position(points, table(kind, Purpose::Centre).values(0))
 }
 
 /// Panics unless a cell is of this dimension.
@@ -94,7 +94,7 @@ pub(super) fn check_dim(kind: CellKind, dim: usize) {
 pub(super) fn for_each_weight(
     kind: CellKind,
     points: &[[f64; 3]],
-    table: &Table,
+    table: &ShapeTable,
     f: impl FnMut(usize, f64),
 ) {
     by_kind!(kind, weights(points, table, f));
@@ -102,7 +102,7 @@ pub(super) fn for_each_weight(
 
 fn weights<const D: usize, const N: usize>(
     points: &[[f64; 3]],
-    table: &Table,
+    table: &ShapeTable,
     mut f: impl FnMut(usize, f64),
 ) {
     let at = relative::<D, N>(points);

@@ -1,6 +1,6 @@
 //! Where a point lies in a cell.
 
-use super::shape::shape;
+use super::shape_functions::shape;
 use crate::kind::CellKind;
 use base::linalg::vec3::{minus, norm};
 

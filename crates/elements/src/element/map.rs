@@ -1,10 +1,10 @@
 //! The map from the reference cell to a cell: gradients and volumes at the points of a rule.
 
-use super::table::Table;
+use super::table::ShapeTable;
 use base::linalg::small::invert;
 
 /// A point of a rule on a cell.
-pub(super) struct Sample<const D: usize, const N: usize> {
+pub(super) struct ElementSample<const D: usize, const N: usize> {
     /// Which of the rule's points it is.
     pub index: usize,
     /// `[i][a]` = ∂N_a/∂x_i.
@@ -65,8 +65,8 @@ pub(super) fn relative<const D: usize, const N: usize>(points: &[[f64; 3]]) -> [
 #[inline]
 pub(super) fn for_each_sample<const D: usize, const N: usize>(
     at: &[[f64; N]; D],
-    table: &Table,
-    mut f: impl FnMut(&Sample<D, N>),
+    table: &ShapeTable,
+    mut f: impl FnMut(&ElementSample<D, N>),
 ) {
     for (index, weight) in table.weights.iter().enumerate() {
         let slopes = slopes::<D, N>(table, index);
@@ -79,7 +79,7 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
                 }
             }
         }
-        f(&Sample {
+        f(&ElementSample {
             index,
             gradient,
             weight: weight * det,
@@ -90,7 +90,7 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
 /// The slopes at a point of the rule, as arrays.
 #[inline]
 pub(super) fn slopes<const D: usize, const N: usize>(
-    table: &Table,
+    table: &ShapeTable,
     index: usize,
 ) -> [&[f64; N]; D] {
     std::array::from_fn(|j| table.slopes(index, j).try_into().expect("a slope per node"))
@@ -117,7 +117,7 @@ pub(super) fn jacobian<const D: usize, const N: usize>(
 
 /// Σ N_a x_a with any number of nodes.
 #[inline]
-pub(super) fn place(points: &[[f64; 3]], values: &[f64]) -> [f64; 3] {
+pub(super) fn interpolate_position(points: &[[f64; 3]], values: &[f64]) -> [f64; 3] {
     let mut out = [0.0; 3];
     for (point, n) in points.iter().zip(values) {
         for i in 0..3 {

@@ -8,25 +8,25 @@ use crate::cell::Moduli;
 const BATCH: usize = 4;
 
 /// Numbers that the processor takes together; rows are made of them, and padded with zeros.
-type Lane = [f64; 4];
+type GradientLane = [f64; 4];
 
 /// Integrals of products of gradients. A row has `L` lanes for the `N` nodes, 4 · L ≥ N.
-pub(super) struct Products<const D: usize, const N: usize, const L: usize> {
+pub(super) struct GradientProducts<const D: usize, const N: usize, const L: usize> {
     /// `[pair(i, j)][a][b]` = ∫ ∂_i N_a ∂_j N_b for i ≤ j; the others are their transposes. For i = j only b ≥ a is
     /// meant.
-    products: [[[Lane; L]; N]; 6],
+    products: [[[GradientLane; L]; N]; 6],
     /// `[i][a]` = ∫ ∂_i N_a.
     mean: [[f64; N]; D],
     volume: f64,
     /// Gradients that are not yet in the sums, and their weights.
-    waiting: [[[Lane; L]; D]; BATCH],
+    waiting: [[[GradientLane; L]; D]; BATCH],
     weights: [f64; BATCH],
     count: usize,
 }
 
 /// sum + x h, by value: the compiler then knows that what is read is not what is written.
 #[inline(always)]
-fn add(x: f64, h: Lane, sum: Lane) -> Lane {
+fn add(x: f64, h: GradientLane, sum: GradientLane) -> GradientLane {
     [0, 1, 2, 3].map(|c| fma(x, h[c], sum[c]))
 }
 
@@ -37,11 +37,11 @@ const fn pair(i: usize, j: usize) -> usize {
     j * (j + 1) / 2 + i
 }
 
-impl<const D: usize, const N: usize, const L: usize> Products<D, N, L> {
+impl<const D: usize, const N: usize, const L: usize> GradientProducts<D, N, L> {
     #[inline(always)]
     pub fn new() -> Self {
         const { assert!(4 * L >= N) };
-        Products {
+        GradientProducts {
             products: [[[[0.0; 4]; L]; N]; 6],
             mean: [[0.0; N]; D],
             volume: 0.0,
@@ -76,8 +76,9 @@ impl<const D: usize, const N: usize, const L: usize> Products<D, N, L> {
             for i in 0..=j {
                 let product = &mut self.products[pair(i, j)];
                 for (a, row) in product.iter_mut().enumerate() {
-                    let left =
-                        |gradient: &[[Lane; L]; D], weight| weight * gradient[i][a / 4][a % 4];
+                    let left = |gradient: &[[GradientLane; L]; D], weight| {
+                        weight * gradient[i][a / 4][a % 4]
+                    };
                     let x = left(p, self.weights[0]);
                     let y = left(q, self.weights[1]);
                     let z = left(r, self.weights[2]);

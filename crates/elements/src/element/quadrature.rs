@@ -32,11 +32,11 @@ impl Purpose {
 }
 
 /// A point of the reference cell with its weight.
-pub(super) type Point = ([f64; 3], f64);
+pub(super) type QuadraturePoint = ([f64; 3], f64);
 
 /// The rule of a cell for a purpose; the weights sum to the volume of the reference cell. Where a cell has no reduced
 /// rule it is the full one.
-pub fn rule(kind: CellKind, purpose: Purpose) -> Vec<Point> {
+pub fn rule(kind: CellKind, purpose: Purpose) -> Vec<QuadraturePoint> {
     let quadratic = kind.order() == 2;
     let n = match purpose {
         Purpose::Centre => 1,
@@ -44,7 +44,7 @@ pub fn rule(kind: CellKind, purpose: Purpose) -> Vec<Point> {
         Purpose::Reduced => 1 + usize::from(quadratic),
         Purpose::Error => 4 + usize::from(quadratic),
         Purpose::Nodes => {
-            let nodes = super::shape::reference_nodes(kind);
+            let nodes = super::shape_functions::reference_nodes(kind);
             return nodes.into_iter().map(|at| (at, 0.0)).collect();
         }
     };
@@ -73,7 +73,7 @@ pub fn rule(kind: CellKind, purpose: Purpose) -> Vec<Point> {
     }
 }
 
-fn triangle(kind: CellKind, purpose: Purpose) -> Vec<Point> {
+fn triangle(kind: CellKind, purpose: Purpose) -> Vec<QuadraturePoint> {
     match (purpose, kind) {
         (Purpose::Centre, _) | (Purpose::Full | Purpose::Reduced, CellKind::Triangle3) => {
             simplex_one(2)
@@ -85,7 +85,7 @@ fn triangle(kind: CellKind, purpose: Purpose) -> Vec<Point> {
     }
 }
 
-fn tetrahedron(kind: CellKind, purpose: Purpose) -> Vec<Point> {
+fn tetrahedron(kind: CellKind, purpose: Purpose) -> Vec<QuadraturePoint> {
     match (purpose, kind) {
         (Purpose::Centre, _) | (Purpose::Full | Purpose::Reduced, CellKind::Tet4) => simplex_one(3),
         (Purpose::Error, CellKind::Tet4) => collapsed(3, 4),
@@ -134,7 +134,7 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
 }
 
 /// n Gauss points in each direction.
-fn tensor(dim: usize, n: usize) -> Vec<Point> {
+fn tensor(dim: usize, n: usize) -> Vec<QuadraturePoint> {
     let line = gauss(n);
     (0..n.pow(dim as u32))
         .map(|k| {
@@ -151,7 +151,7 @@ fn tensor(dim: usize, n: usize) -> Vec<Point> {
 }
 
 /// A rule of the triangle times `n` Gauss points.
-fn prism(flat: &[Point], n: usize) -> Vec<Point> {
+fn prism(flat: &[QuadraturePoint], n: usize) -> Vec<QuadraturePoint> {
     let mut rule = Vec::new();
     for (z, along) in gauss(n) {
         for &([x, y, _], weight) in flat {
@@ -163,7 +163,7 @@ fn prism(flat: &[Point], n: usize) -> Vec<Point> {
 
 /// The slopes of the pyramid's functions, and with them the Jacobian, depend on x/(1 − z) and y/(1 − z) only: one point
 /// along the axis, where the weight (1 − z)² has its mean, integrates every stiffness as well as many.
-fn pyramid(purpose: Purpose) -> Vec<Point> {
+fn pyramid(purpose: Purpose) -> Vec<QuadraturePoint> {
     let (n, line) = match purpose {
         Purpose::Centre => (1, vec![(0.25, 1.0 / 3.0)]),
         Purpose::Full | Purpose::Reduced | Purpose::Nodes => (2, vec![(0.25, 1.0 / 3.0)]),
@@ -196,7 +196,7 @@ pub fn triangle_rule(n: usize) -> Vec<([f64; 2], f64)> {
 }
 
 /// A simplex as a collapsed cube with n Gauss points in each direction: exact for degree 2n − D.
-fn collapsed(dim: usize, n: usize) -> Vec<Point> {
+fn collapsed(dim: usize, n: usize) -> Vec<QuadraturePoint> {
     let cube = tensor(dim, n).into_iter();
     cube.map(|(s, mut weight)| {
         let (mut at, mut left) = ([0.0; 3], 1.0);
@@ -212,14 +212,14 @@ fn collapsed(dim: usize, n: usize) -> Vec<Point> {
 }
 
 /// The centroid of a simplex: exact for degree 1.
-fn simplex_one(dim: usize) -> Vec<Point> {
+fn simplex_one(dim: usize) -> Vec<QuadraturePoint> {
     let mut at = [0.0; 3];
     at[..dim].fill(1.0 / (dim + 1) as f64);
     vec![(at, 1.0 / (1..=dim).product::<usize>() as f64)]
 }
 
 /// D + 1 points of a simplex that differ in one barycentric coordinate, `peak`; the others are equal.
-fn orbit(dim: usize, peak: f64, weight: f64, rule: &mut Vec<Point>) {
+fn orbit(dim: usize, peak: f64, weight: f64, rule: &mut Vec<QuadraturePoint>) {
     let mut base = [0.0; 3];
     base[..dim].fill((1.0 - peak) / dim as f64);
     rule.push((base, weight));
@@ -231,14 +231,14 @@ fn orbit(dim: usize, peak: f64, weight: f64, rule: &mut Vec<Point>) {
 }
 
 /// Exact for degree 2.
-fn triangle_three() -> Vec<Point> {
+fn triangle_three() -> Vec<QuadraturePoint> {
     let mut rule = Vec::new();
     orbit(2, 2.0 / 3.0, 1.0 / 6.0, &mut rule);
     rule
 }
 
 /// Exact for degree 4, in closed form (Strang and Fix; Dunavant).
-fn triangle_six() -> Vec<Point> {
+fn triangle_six() -> Vec<QuadraturePoint> {
     let (ten, mut rule) = (10_f64.sqrt(), Vec::new());
     let root = (38.0 - 44.0 * 0.4_f64.sqrt()).sqrt();
     let difference = (213_125.0 - 53_320.0 * ten).sqrt();
@@ -255,14 +255,14 @@ fn triangle_six() -> Vec<Point> {
 }
 
 /// Exact for degree 2.
-fn tetrahedron_four() -> Vec<Point> {
+fn tetrahedron_four() -> Vec<QuadraturePoint> {
     let mut rule = Vec::new();
     orbit(3, 0.25 + 0.15 * 5_f64.sqrt(), 1.0 / 24.0, &mut rule);
     rule
 }
 
 /// Exact for degree 5 with positive weights (Grundmann and Möller; Walkington).
-fn tetrahedron_fourteen() -> Vec<Point> {
+fn tetrahedron_fourteen() -> Vec<QuadraturePoint> {
     let mut rule = Vec::new();
     let near = 0.310_885_919_263_300_6;
     let far = 0.092_735_250_310_891_23;

@@ -3,7 +3,7 @@
 //! The nodes of a side are in the order of [`CellKind::sides`]: then normals point out of the cell. A side of a plane
 //! cell is a segment in the plane, its area is its length.
 
-use super::map::place;
+use super::map::interpolate_position;
 use super::quadrature::Purpose;
 use super::table::table;
 use crate::kind::CellKind;
@@ -11,7 +11,7 @@ use base::linalg::vec3::{cross, norm};
 
 /// Areas and normals of a side, by node; the entries of nodes that the side does not have are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SideWeights {
+pub struct ElementSideWeights {
     /// ∫ N_a. At the corners of sides of second order it is zero ([`CellKind::Triangle6`]) or negative
     /// ([`CellKind::Quad8`]).
     pub area: [f64; 9],
@@ -25,8 +25,8 @@ pub struct SideWeights {
 ///
 /// # Panics
 /// When the side is not of dimension `dim` − 1, or has another number of nodes.
-pub fn side_weights(kind: CellKind, dim: usize, points: &[[f64; 3]]) -> SideWeights {
-    let mut weights = SideWeights::default();
+pub fn side_weights(kind: CellKind, dim: usize, points: &[[f64; 3]]) -> ElementSideWeights {
+    let mut weights = ElementSideWeights::default();
     for_each_point(kind, dim, points, |values, vector, weight| {
         let area = norm(vector);
         for (a, n) in values.iter().enumerate() {
@@ -62,7 +62,8 @@ pub fn side_load<F>(
     for_each_point(kind, dim, points, |values, vector, weight| {
         let area = norm(vector);
         let normal = vector.map(|v| v / area);
-        let force = f(place(points, values), normal).map(|value| value * weight * area);
+        let force =
+            f(interpolate_position(points, values), normal).map(|value| value * weight * area);
         for (node, n) in out.chunks_exact_mut(components).zip(values) {
             for (entry, value) in node.iter_mut().zip(force) {
                 *entry += value * n;

@@ -5,9 +5,9 @@ use super::hourglass;
 use super::incompatible;
 use super::integration::{moduli, Integration};
 use super::map::{by_kind, fma, for_each_sample, relative};
-use super::products::Products;
+use super::products::GradientProducts;
 use super::quadrature::Purpose;
-use super::table::{table, Table};
+use super::table::{table, ShapeTable};
 use crate::cell::{Material, Moduli};
 use crate::element::axial;
 use crate::kind::CellKind;
@@ -54,7 +54,7 @@ pub fn stiffness(
 
 fn scalar<const D: usize, const N: usize>(
     points: &[[f64; 3]],
-    table: &Table,
+    table: &ShapeTable,
     rho: f64,
     out: &mut [f64],
 ) {
@@ -77,7 +77,13 @@ fn scalar<const D: usize, const N: usize>(
     }
 }
 
-fn elastic_of(kind: CellKind, points: &[[f64; 3]], table: &Table, moduli: Moduli, out: &mut [f64]) {
+fn elastic_of(
+    kind: CellKind,
+    points: &[[f64; 3]],
+    table: &ShapeTable,
+    moduli: Moduli,
+    out: &mut [f64],
+) {
     match kind {
         CellKind::Triangle3 => elastic::<2, 3, 1>(points, table, moduli, out),
         CellKind::Triangle6 => elastic::<2, 6, 2>(points, table, moduli, out),
@@ -98,11 +104,11 @@ fn elastic_of(kind: CellKind, points: &[[f64; 3]], table: &Table, moduli: Moduli
 
 fn elastic<const D: usize, const N: usize, const L: usize>(
     points: &[[f64; 3]],
-    table: &Table,
+    table: &ShapeTable,
     moduli: Moduli,
     out: &mut [f64],
 ) {
-    let mut products = Products::<D, N, L>::new();
+    let mut products = GradientProducts::<D, N, L>::new();
     for_each_sample::<D, N>(&relative(points), table, |s| {
         products.add(s.weight, &s.gradient);
     });

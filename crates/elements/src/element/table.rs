@@ -1,12 +1,12 @@
 //! Shape functions at the points of a rule, computed once per kind and purpose.
 
 use super::quadrature::{rule, Purpose};
-use super::shape::shape;
+use super::shape_functions::shape;
 use crate::kind::CellKind;
 use std::sync::OnceLock;
 
 /// The values of a cell's shape functions at the points of a rule.
-pub(super) struct Table {
+pub(super) struct ShapeTable {
     nodes: usize,
     dim: usize,
     /// The points in the reference cell.
@@ -19,10 +19,10 @@ pub(super) struct Table {
     slopes: Vec<f64>,
 }
 
-impl Table {
-    fn new(kind: CellKind, purpose: Purpose) -> Table {
+impl ShapeTable {
+    fn new(kind: CellKind, purpose: Purpose) -> ShapeTable {
         let (nodes, dim) = (kind.nodes(), kind.dim());
-        let mut table = Table {
+        let mut table = ShapeTable {
             nodes,
             dim,
             at: Vec::new(),
@@ -59,8 +59,9 @@ const KINDS: usize = CellKind::ALL.len();
 const PURPOSES: usize = Purpose::ALL.len();
 
 /// The table of a kind for a purpose.
-pub(super) fn table(kind: CellKind, purpose: Purpose) -> &'static Table {
-    static TABLES: [OnceLock<Table>; KINDS * PURPOSES] =
+pub(super) fn table(kind: CellKind, purpose: Purpose) -> &'static ShapeTable {
+    static TABLES: [OnceLock<ShapeTable>; KINDS * PURPOSES] =
         [const { OnceLock::new() }; KINDS * PURPOSES];
-    TABLES[kind as usize * PURPOSES + purpose as usize].get_or_init(|| Table::new(kind, purpose))
+    TABLES[kind as usize * PURPOSES + purpose as usize]
+        .get_or_init(|| ShapeTable::new(kind, purpose))
 }

@@ -88,21 +88,21 @@ pub fn check_jacobian(
     let inside = rules
         .iter()
         .map(|rule| signs(kind, points, *rule))
-        .reduce(Signs::and)
+        .reduce(JacobianSigns::and)
         .expect("a rule");
     let whole = volume(kind, dim, points);
     let affine = matches!(kind, CellKind::Triangle3 | CellKind::Tet4);
     if inside.negative || inside.zero || whole <= 0.0 {
         let elsewhere = || !affine && signs(kind, points, Purpose::Nodes).positive;
         return Err(match inside {
-            Signs {
+            JacobianSigns {
                 negative: true,
                 positive: true,
                 ..
             } => BadCell::Folded,
-            Signs { zero: true, .. } => BadCell::Degenerate,
-            Signs { negative: true, .. } if whole > 0.0 && elsewhere() => BadCell::Folded,
-            Signs { negative: true, .. } => BadCell::Inverted,
+            JacobianSigns { zero: true, .. } => BadCell::Degenerate,
+            JacobianSigns { negative: true, .. } if whole > 0.0 && elsewhere() => BadCell::Folded,
+            JacobianSigns { negative: true, .. } => BadCell::Inverted,
             _ => BadCell::Folded,
         });
     }
@@ -137,7 +137,7 @@ pub fn check_jacobian(
 
 /// Which signs det J has.
 #[derive(Clone, Copy)]
-struct Signs {
+struct JacobianSigns {
     positive: bool,
     zero: bool,
     negative: bool,
@@ -147,14 +147,14 @@ struct Signs {
     ratio: f64,
 }
 
-impl Signs {
-    fn and(self, other: Signs) -> Signs {
+impl JacobianSigns {
+    fn and(self, other: JacobianSigns) -> JacobianSigns {
         let (less, more) = if other.ratio < self.ratio {
             (other, self)
         } else {
             (self, other)
         };
-        Signs {
+        JacobianSigns {
             positive: less.positive || more.positive,
             zero: less.zero || more.zero,
             negative: less.negative || more.negative,
@@ -163,7 +163,7 @@ impl Signs {
     }
 }
 
-fn signs(kind: CellKind, points: &[[f64; 3]], purpose: Purpose) -> Signs {
+fn signs(kind: CellKind, points: &[[f64; 3]], purpose: Purpose) -> JacobianSigns {
     by_kind!(kind, signs_of(kind, points, purpose))
 }
 
@@ -171,10 +171,10 @@ fn signs_of<const D: usize, const N: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
     purpose: Purpose,
-) -> Signs {
+) -> JacobianSigns {
     let table = table(kind, purpose);
     let at = relative::<D, N>(points);
-    let mut signs = Signs {
+    let mut signs = JacobianSigns {
         positive: false,
         zero: false,
         negative: false,

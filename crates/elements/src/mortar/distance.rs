@@ -1,6 +1,6 @@
 //! How far two sides are apart: along a row, and as far as they are looked for.
 
-use super::side::Side;
+use super::side::MortarSide;
 use base::linalg::vec3::{dot, minus};
 
 /// Sides may be so many of their longest edges apart where nothing is said.
@@ -10,7 +10,7 @@ const FAR: f64 = 4.0;
 const ROUNDING: f64 = 1e-13;
 
 /// How far along the normals the other side is looked for: `wanted`, or a few edges where that is infinite.
-pub fn reach(side: &Side, other: &Side, wanted: f64) -> f64 {
+pub fn reach(side: &MortarSide, other: &MortarSide, wanted: f64) -> f64 {
     if wanted.is_finite() {
         wanted
     } else {

@@ -15,8 +15,8 @@
 
 use std::collections::BTreeMap;
 
-use super::sample::Sample;
-use super::side::Side;
+use super::sample::MortarSample;
+use super::side::MortarSide;
 use crate::kind::CellKind;
 use base::linalg::dense::{self, Dense, Scratch};
 
@@ -29,7 +29,7 @@ const SHARE: f64 = 0.2;
 
 /// A row: Σ own · u − Σ other · u°.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct DualMortarRow {
     /// The node of the multiplier side.
     pub node: u32,
     /// Nodes of the multiplier side with D_pk / D_p, by increasing number; the coefficients sum to 1.
@@ -43,26 +43,26 @@ pub struct Row {
 /// The rows of the nodes of `side` that lie opposite `other`, by increasing node. `samples` are those of both sides,
 /// `excluded` says which nodes of `side` must not carry a multiplier, and `factor` multiplies weights (2π r for rings).
 pub fn rows(
-    side: &Side,
-    other: &Side,
-    samples: &[Sample],
+    side: &MortarSide,
+    other: &MortarSide,
+    samples: &[MortarSample],
     excluded: &dyn Fn(u32) -> bool,
     factor: &dyn Fn([f64; 3]) -> f64,
-) -> Vec<Row> {
+) -> Vec<DualMortarRow> {
     let faces: Vec<Covered> = samples
         .chunk_by(|a, b| a.face == b.face)
         .map(|of_face| Covered::new(side, other, of_face, factor))
         .collect();
     let carries = carriers(side, &faces, excluded, factor);
-    let mut sums: BTreeMap<u32, Sum> = BTreeMap::new();
+    let mut sums: BTreeMap<u32, RowIntegrals> = BTreeMap::new();
     for face in &faces {
         face.add(side, other, &carries, &mut sums);
     }
-    let finish = |(node, sum): (u32, Sum)| {
+    let finish = |(node, sum): (u32, RowIntegrals)| {
         let share = |(k, v): (u32, f64)| (k, v / sum.area);
         // What is left of terms that cancel.
         let counts = |t: &(u32, f64)| t.1.abs() > 1e-13;
-        Row {
+        DualMortarRow {
             node,
             own: sum.own.into_iter().map(share).filter(counts).collect(),
             other: sum.other.into_iter().map(share).filter(counts).collect(),
@@ -74,7 +74,7 @@ pub fn rows(
 
 /// The integrals of a row.
 #[derive(Default)]
-struct Sum {
+struct RowIntegrals {
     own: BTreeMap<u32, f64>,
     other: BTreeMap<u32, f64>,
     area: f64,
@@ -83,7 +83,7 @@ struct Sum {
 /// A face of the multiplier side, as far as it lies opposite the other side.
 struct Covered<'s> {
     face: u32,
-    samples: &'s [Sample],
+    samples: &'s [MortarSample],
     /// The modified functions at the samples, of both sides the values of shape functions, and the weights.
     modified: Vec<[f64; 9]>,
     own: Vec<[f64; 9]>,
@@ -93,9 +93,9 @@ struct Covered<'s> {
 
 impl<'s> Covered<'s> {
     fn new(
-        side: &Side,
-        other: &Side,
-        samples: &'s [Sample],
+        side: &MortarSide,
+        other: &MortarSide,
+        samples: &'s [MortarSample],
         factor: &dyn Fn([f64; 3]) -> f64,
     ) -> Covered<'s> {
         let face = samples[0].face;
@@ -119,7 +119,13 @@ impl<'s> Covered<'s> {
     }
 
     /// Adds the integrals of the face to the rows of its nodes.
-    fn add(&self, side: &Side, other: &Side, carries: &[bool], sums: &mut BTreeMap<u32, Sum>) {
+    fn add(
+        &self,
+        side: &MortarSide,
+        other: &MortarSide,
+        carries: &[bool],
+        sums: &mut BTreeMap<u32, RowIntegrals>,
+    ) {
         let nodes = &side.faces()[self.face as usize].nodes;
         let active: Vec<usize> = (0..nodes.len())
             .filter(|&a| carries[nodes[a] as usize])
@@ -191,7 +197,7 @@ const SINGULAR: f64 = 1e-12;
 
 /// Which nodes of the side carry multipliers.
 fn carriers(
-    side: &Side,
+    side: &MortarSide,
     faces: &[Covered<'_>],
     excluded: &dyn Fn(u32) -> bool,
     factor: &dyn Fn([f64; 3]) -> f64,

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::side::{Piece, Side};
+use super::side::{MortarSide, Piece};
 use crate::element::FaceValues;
 use crate::kind::CellKind;
 use base::linalg::vec3::{cross, dot, minus, norm, unit};
@@ -32,7 +32,7 @@ pub struct Foot {
 
 /// The search for feet on a side.
 pub struct Feet<'s> {
-    side: &'s Side,
+    side: &'s MortarSide,
     /// How many pieces have an edge, by its nodes; in the plane a corner, twice.
     edges: HashMap<[u32; 2], u32>,
     /// How far beyond the rim a node may lie.
@@ -41,7 +41,7 @@ pub struct Feet<'s> {
 
 impl<'s> Feet<'s> {
     /// Prepares the search.
-    pub fn new(side: &'s Side) -> Feet<'s> {
+    pub fn new(side: &'s MortarSide) -> Feet<'s> {
         let mut edges = HashMap::new();
         for edge in side.pieces.iter().flat_map(edges_of) {
             *edges.entry(edge).or_insert(0) += 1;
@@ -165,7 +165,7 @@ fn inside(kind: CellKind, at: [f64; 3]) -> [f64; 3] {
     }
 }
 
-impl Side {
+impl MortarSide {
     /// A small part of the typical size of its faces: the tolerance of CalculiX's *TIE where a deck gives none. The
     /// size of a triangle is the distance of its centre from an edge.
     pub fn small(&self) -> f64 {

@@ -27,9 +27,9 @@ mod space;
 mod tree;
 
 pub use distance::{distance, reach};
-pub use dual::{has_positive_integrals, positive, rows, Row};
+pub use dual::{has_positive_integrals, positive, rows, DualMortarRow};
 pub use foot::Feet;
 pub use orientation::one_way;
-pub use sample::{samples, Sample};
-pub use side::{across, reversed, Face, Side};
+pub use sample::{samples, MortarSample};
+pub use side::{across, reversed, MortarFace, MortarSide};
 pub use tree::Tree;

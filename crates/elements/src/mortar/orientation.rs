@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::side::Face;
+use super::side::MortarFace;
 
 /// Two neighbouring faces that go around in opposite ways, by their places in the list: one of them has its normal
 /// inside the body. `None` if all neighbours agree.
-pub fn one_way(faces: &[Face]) -> Option<[usize; 2]> {
+pub fn one_way(faces: &[MortarFace]) -> Option<[usize; 2]> {
     // In the plane the ends of a face, in space its edges, from corner to corner.
     let mut seen: BTreeMap<[u32; 2], Vec<(usize, bool)>> = BTreeMap::new();
     for (f, face) in faces.iter().enumerate() {

@@ -4,8 +4,8 @@
 //! and so is continuous where the side is smooth: every point has one point opposite. A segment is cut where nodes of
 //! the other side lie opposite it.
 
-use super::sample::Sample;
-use super::side::{Piece, Side};
+use super::sample::MortarSample;
+use super::side::{MortarSide, Piece};
 use super::tree::bounds;
 use crate::element::gauss;
 use base::linalg::vec3::{dot, minus, norm, unit};
@@ -19,7 +19,7 @@ const SHORT: f64 = 1e-9;
 /// Two pieces face each other where the cosine of the angle between their normals is below this.
 pub(super) const OPPOSITE: f64 = -0.5;
 
-pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
+pub(super) fn samples(side: &MortarSide, other: &MortarSide, reach: f64) -> Vec<MortarSample> {
     let rule = gauss(POINTS);
     let mut out = Vec::new();
     for piece in &side.pieces {
@@ -56,7 +56,7 @@ pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
                 let here = side.values(piece.face, at);
                 let speed = norm(here.tangents[0]) * 0.5 * (piece.at[1][0] - piece.at[0][0]).abs();
                 let opposite = opposite(other, facing, here.x, ray.normal(t));
-                out.push(Sample {
+                out.push(MortarSample {
                     face: piece.face,
                     at,
                     other: facing.face,
@@ -76,7 +76,7 @@ struct Ray {
 }
 
 impl Ray {
-    fn new(side: &Side, piece: &Piece) -> Ray {
+    fn new(side: &MortarSide, piece: &Piece) -> Ray {
         let x = side.corners(piece);
         Ray {
             x: [x[0], x[1]],
@@ -113,8 +113,8 @@ impl Ray {
     fn nearest<'p>(
         &self,
         t: f64,
-        (side, own): (&Side, &Piece),
-        (other, near): (&Side, &[&'p Piece]),
+        (side, own): (&MortarSide, &Piece),
+        (other, near): (&MortarSide, &[&'p Piece]),
         reach: f64,
     ) -> Option<&'p Piece> {
         let (x, n) = self.at(t);
@@ -140,7 +140,7 @@ impl Ray {
 }
 
 /// Where the normal `n` at `x` meets the face of a piece, in the face's reference cell.
-fn opposite(other: &Side, piece: &Piece, x: [f64; 3], n: [f64; 3]) -> [f64; 3] {
+fn opposite(other: &MortarSide, piece: &Piece, x: [f64; 3], n: [f64; 3]) -> [f64; 3] {
     let times = |a: [f64; 3], b: [f64; 3]| a[0] * b[1] - a[1] * b[0];
     let mut s = 0.5 * (piece.at[0][0] + piece.at[1][0]);
     // Newton's method: one step for segments of first order, a few for curved ones.

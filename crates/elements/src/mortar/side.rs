@@ -10,14 +10,14 @@ const SMOOTH: f64 = 0.8;
 
 /// A face of an element.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Face {
+pub struct MortarFace {
     /// Its kind: a segment in the plane, a triangle or a quadrilateral in space.
     pub kind: CellKind,
     /// Its nodes, as places in the list of points, in the order of the kind: the normal points out of the body.
     pub nodes: Vec<u32>,
 }
 
-impl Face {
+impl MortarFace {
     /// The kind of the faces of so many nodes in dimension `dim`; `None` if there is none.
     pub fn kind_of(dim: usize, nodes: usize) -> Option<CellKind> {
         Some(match (dim, nodes) {
@@ -47,22 +47,22 @@ pub(super) struct Piece {
 
 /// A side of a body, in the plane or in space.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Side {
+pub struct MortarSide {
     dim: usize,
     points: Vec<[f64; 3]>,
-    faces: Vec<Face>,
+    faces: Vec<MortarFace>,
     pub(super) pieces: Vec<Piece>,
     tree: Tree,
     /// The pieces around each node.
     around: Vec<Vec<u32>>,
 }
 
-impl Side {
+impl MortarSide {
     /// A side in dimension `dim`, 2 or 3.
     ///
     /// # Panics
     /// If a face is not of dimension `dim` − 1, or has another number of nodes than its kind.
-    pub fn new(dim: usize, points: Vec<[f64; 3]>, faces: Vec<Face>) -> Side {
+    pub fn new(dim: usize, points: Vec<[f64; 3]>, faces: Vec<MortarFace>) -> MortarSide {
         let mut pieces = Vec::new();
         for (f, face) in (0..).zip(&faces) {
             assert_eq!(face.kind.dim() + 1, dim, "a face of dimension {dim} − 1");
@@ -92,7 +92,7 @@ impl Side {
                 .for_each(|&c| around[c as usize].push(k));
         }
         let corners = |p: &Piece| bounds(p.corners.iter().map(|&k| points[k as usize]));
-        Side {
+        MortarSide {
             tree: Tree::new(pieces.iter().map(corners).collect()),
             dim,
             points,
@@ -113,24 +113,24 @@ impl Side {
     }
 
     /// The faces.
-    pub fn faces(&self) -> &[Face] {
+    pub fn faces(&self) -> &[MortarFace] {
         &self.faces
     }
 
     /// This side with its normals reversed.
-    pub fn reversed(&self) -> Side {
-        let turned = |face: &Face| Face {
+    pub fn reversed(&self) -> MortarSide {
+        let turned = |face: &MortarFace| MortarFace {
             kind: face.kind,
             nodes: reversed(face.kind, &face.nodes),
         };
         let faces = self.faces.iter().map(turned).collect();
-        Side::new(self.dim, self.points.clone(), faces)
+        MortarSide::new(self.dim, self.points.clone(), faces)
     }
 
     /// This side at another place, `way` from here.
-    pub fn moved(&self, way: [f64; 3]) -> Side {
+    pub fn moved(&self, way: [f64; 3]) -> MortarSide {
         let points = self.points.iter().map(|x| [0, 1, 2].map(|d| x[d] + way[d]));
-        Side::new(self.dim, points.collect(), self.faces.clone())
+        MortarSide::new(self.dim, points.collect(), self.faces.clone())
     }
 
     /// The longest edge of a piece.
@@ -160,7 +160,7 @@ impl Side {
     pub(super) fn meets(
         &self,
         piece: &Piece,
-        other: &Side,
+        other: &MortarSide,
         facing: &Piece,
         gap: f64,
         reach: f64,

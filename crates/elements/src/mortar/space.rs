@@ -6,8 +6,8 @@
 //! whatever their kind, and areas are those of the curved multiplier side.
 
 use super::plane::OPPOSITE;
-use super::sample::Sample;
-use super::side::{Piece, Side};
+use super::sample::MortarSample;
+use super::side::{MortarSide, Piece};
 use super::tree::bounds;
 use crate::element::triangle_rule;
 use base::linalg::vec3::{cross, dot, minus, norm, unit};
@@ -20,11 +20,11 @@ const POINTS: [usize; 3] = [3, 5, 8];
 /// Polygons smaller than this fraction of the piece are left out.
 const SMALL: f64 = 1e-10;
 
-pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
+pub(super) fn samples(side: &MortarSide, other: &MortarSide, reach: f64) -> Vec<MortarSample> {
     let rules = POINTS.map(triangle_rule);
     let mut out = Vec::new();
     for piece in &side.pieces {
-        let plane = Plane::new(side, piece);
+        let plane = PiecePlane::new(side, piece);
         let around =
             bounds(side.corners(piece).into_iter().flat_map(|x| {
                 [-reach, reach].map(|r| [0, 1, 2].map(|d| x[d] + r * plane.axes[2][d]))
@@ -85,7 +85,7 @@ pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
                     let here = side.values(piece.face, at);
                     let vector = cross(here.tangents[0], here.tangents[1]);
                     let stretch = norm(vector) / dot(vector, plane.axes[2]).abs();
-                    out.push(Sample {
+                    out.push(MortarSample {
                         face: piece.face,
                         at,
                         other: facing.face,
@@ -100,20 +100,20 @@ pub(super) fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
 }
 
 /// The plane of a piece: its centre, two axes along it and the normal.
-struct Plane {
+struct PiecePlane {
     origin: [f64; 3],
     axes: [[f64; 3]; 3],
 }
 
-impl Plane {
-    fn new(side: &Side, piece: &Piece) -> Plane {
+impl PiecePlane {
+    fn new(side: &MortarSide, piece: &Piece) -> PiecePlane {
         let x = side.corners(piece);
         let origin = [0, 1, 2].map(|d| x.iter().map(|x| x[d]).sum::<f64>() / x.len() as f64);
         let normal = piece.normal;
         let along = minus(x[1], x[0]);
         let part = dot(along, normal);
         let first = unit([0, 1, 2].map(|d| along[d] - part * normal[d])).unwrap_or_default();
-        Plane {
+        PiecePlane {
             origin,
             axes: [first, cross(normal, first), normal],
         }
@@ -129,7 +129,7 @@ impl Plane {
     }
 
     /// Where the normal at `x` meets the face of a piece, in the face's reference cell.
-    fn meet(&self, side: &Side, piece: &Piece, x: [f64; 3]) -> [f64; 3] {
+    fn meet(&self, side: &MortarSide, piece: &Piece, x: [f64; 3]) -> [f64; 3] {
         let target = self.flat(x);
         let n = piece.at.len() as f64;
         let mut at = [0, 1, 2].map(|d| piece.at.iter().map(|a| a[d]).sum::<f64>() / n);
@@ -156,7 +156,7 @@ impl Plane {
 }
 
 /// Which of the rules a face needs.
-fn degree(side: &Side, piece: &Piece) -> usize {
+fn degree(side: &MortarSide, piece: &Piece) -> usize {
     let tangents = |k: usize| side.values(piece.face, piece.at[k]).tangents;
     let [a, b, c] = [0, 1, 2].map(tangents);
     let differ = |x: [[f64; 3]; 2]| (0..2).map(|j| norm(minus(a[j], x[j]))).fold(0.0, f64::max);

@@ -39,7 +39,7 @@ fn the_mean_gradient_is_that_of_the_sides() {
 fn hourglasses_are_soft_but_not_free() {
     for kind in [CellKind::Quad4, CellKind::Hex8] {
         let dim = kind.dim();
-        let points = super::super::shape::reference_nodes(kind);
+        let points = super::super::shape_functions::reference_nodes(kind);
         let energy = |integration, mode: &dyn Fn([f64; 3]) -> f64| {
             let k = matrix(kind, &points, &STEEL, integration);
             let u = Mat::from_fn(k.nrows(), 1, |row, _| match row % dim {

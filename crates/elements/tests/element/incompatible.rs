@@ -9,7 +9,7 @@ use faer::{Mat, Side};
 /// ½ uᵀ K u of a beam's cell with sides `length` and `height` that is bent with curvature 1.
 fn bending(kind: CellKind, length: f64, height: f64, integration: Integration) -> f64 {
     let dim = kind.dim();
-    let points: Vec<[f64; 3]> = super::super::shape::reference_nodes(kind)
+    let points: Vec<[f64; 3]> = super::super::shape_functions::reference_nodes(kind)
         .into_iter()
         .map(|[x, y, z]| [0.5 * length * x, 0.5 * height * y, 0.5 * z])
         .collect();

@@ -89,7 +89,7 @@ fn an_inverted_cell_has_a_negative_volume() {
 #[test]
 fn a_curved_triangle_has_the_area_of_its_parabolas() {
     // The hypotenuse bulges by h: 2/3 h times its length more.
-    let mut points = super::super::shape::reference_nodes(CellKind::Triangle6);
+    let mut points = super::super::shape_functions::reference_nodes(CellKind::Triangle6);
     let h = 0.1;
     points[4][0] += h / 2_f64.sqrt();
     points[4][1] += h / 2_f64.sqrt();

@@ -113,7 +113,7 @@ fn points_lie_inside_and_weights_are_positive() {
             for (at, weight) in rule(kind, purpose) {
                 assert!(weight > 0.0);
                 // Functions of first order are positive inside.
-                let values = super::super::shape::shape(kind.linear(), at).value;
+                let values = super::super::shape_functions::shape(kind.linear(), at).value;
                 assert!(
                     values[..kind.corners()].iter().all(|&n| n > 0.0),
                     "{kind:?} {purpose:?} {at:?}"

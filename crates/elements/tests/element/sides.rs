@@ -66,7 +66,7 @@ fn areas_of_flat_sides_are_exact() {
 #[test]
 fn shares_of_nodes_are_those_of_textbooks() {
     let unit = |kind| {
-        let points = super::super::shape::reference_nodes(kind);
+        let points = super::super::shape_functions::reference_nodes(kind);
         side_weights(kind, kind.dim() + 1, &points).area
     };
     let close = |kind, expected: &[f64]| {

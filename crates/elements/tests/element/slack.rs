@@ -1,6 +1,6 @@
 //! Unit tests of `crates/elements/src/element/slack.rs`.
 
-use super::super::shape::reference_nodes;
+use super::super::shape_functions::reference_nodes;
 use super::super::stiffness;
 use super::super::testing::{distorted, elastic};
 use super::*;

@@ -90,7 +90,7 @@ fn textbook(kind: CellKind, points: &[[f64; 3]], poisson: f64, young: f64) -> Ma
     let n = dim * kind.nodes();
     let mut k = Mat::<f64>::zeros(n, n);
     for (at, weight) in super::super::quadrature::rule(kind, Purpose::Error) {
-        let slope = super::super::shape::shape(kind, at).slope;
+        let slope = super::super::shape_functions::shape(kind, at).slope;
         let j = Mat::from_fn(dim, dim, |i, s| {
             points
                 .iter()

@@ -1,4 +1,4 @@
-use super::super::shape::shape;
+use super::super::shape_functions::shape;
 use super::super::testing::{affine, combinations, distorted, elastic, solid_kinds, Random, STEEL};
 use super::*;
 use crate::cell::{Cure, Plane};
@@ -141,7 +141,7 @@ fn quadratic_displacements_have_exact_stresses_on_affine_cells_of_second_order()
 fn bending_has_exact_stresses_with_incompatible_modes() {
     for kind in [CellKind::Quad4, CellKind::Hex8] {
         let dim = kind.dim();
-        let points: Vec<[f64; 3]> = super::super::shape::reference_nodes(kind)
+        let points: Vec<[f64; 3]> = super::super::shape_functions::reference_nodes(kind)
             .into_iter()
             .map(|[x, y, z]| [2.0 * x, 0.3 * y, z])
             .collect();

@@ -1,7 +1,7 @@
 //! For the tests of elements: distorted cells, small meshes of every kind, assembly and a direct solver.
 
-use super::map::place;
-use super::shape::{reference_nodes, shape};
+use super::map::interpolate_position;
+use super::shape_functions::{reference_nodes, shape};
 use super::{stiffness, Integration};
 use crate::cell::{Cure, Material, Plane};
 use crate::kind::CellKind;
@@ -83,7 +83,7 @@ pub fn inside(kind: CellKind, random: &mut Random) -> [f64; 3] {
         .collect();
     let sum: f64 = weights.iter().sum();
     let weights: Vec<f64> = weights.into_iter().map(|w| w / sum).collect();
-    place(&nodes[..kind.corners()], &weights)
+    interpolate_position(&nodes[..kind.corners()], &weights)
 }
 
 /// The reference cell, stretched, and with every node moved.
@@ -112,7 +112,7 @@ pub fn affine(kind: CellKind) -> Vec<[f64; 3]> {
 pub fn straight(kind: CellKind, seed: u64) -> Vec<[f64; 3]> {
     let corners = distorted(kind.linear(), seed);
     let nodes = reference_nodes(kind);
-    let at = |&node: &[f64; 3]| place(&corners, &shape(kind.linear(), node).value);
+    let at = |&node: &[f64; 3]| interpolate_position(&corners, &shape(kind.linear(), node).value);
     nodes.iter().map(at).collect()
 }
 

@@ -1,4 +1,4 @@
-use super::super::shape::reference_nodes;
+use super::super::shape_functions::reference_nodes;
 use super::super::testing::{distorted, solid_kinds, straight, Random};
 use super::*;
 

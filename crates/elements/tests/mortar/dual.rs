@@ -1,7 +1,7 @@
 //! Unit tests of `crates/elements/src/mortar/dual.rs`: rows between flat sides with different meshes, of all kinds.
 
 use super::*;
-use crate::mortar::{samples, Face};
+use crate::mortar::{samples, MortarFace};
 
 /// A point of a square of side 1 that is turned in space, from coordinates on the square.
 fn place([s, t]: [f64; 2], lift: f64) -> [f64; 3] {
@@ -11,8 +11,8 @@ fn place([s, t]: [f64; 2], lift: f64) -> [f64; 3] {
 
 /// A square with n × n faces of a kind, its inner nodes moved. `up`: the normal is that of the square, else its
 /// opposite.
-fn square(kind: CellKind, n: usize, up: bool, lift: f64, length: f64) -> Side {
-    let (mut points, mut faces): (Vec<[f64; 3]>, Vec<Face>) = (Vec::new(), Vec::new());
+fn square(kind: CellKind, n: usize, up: bool, lift: f64, length: f64) -> MortarSide {
+    let (mut points, mut faces): (Vec<[f64; 3]>, Vec<MortarFace>) = (Vec::new(), Vec::new());
     let mut flat: Vec<[f64; 2]> = Vec::new();
     let mut number = |at: [f64; 2], points: &mut Vec<[f64; 3]>| {
         let same = |p: &[f64; 2]| (p[0] - at[0]).abs() + (p[1] - at[1]).abs() < 1e-9;
@@ -65,15 +65,15 @@ fn square(kind: CellKind, n: usize, up: bool, lift: f64, length: f64) -> Side {
                     corners.push([sum(0), sum(1)]);
                 }
                 let nodes = corners.iter().map(|&x| number(x, &mut points)).collect();
-                faces.push(Face { kind, nodes });
+                faces.push(MortarFace { kind, nodes });
             }
         }
     }
-    Side::new(3, points, faces)
+    MortarSide::new(3, points, faces)
 }
 
 /// A polygon in the plane, from (0, 0) to `length` · (0.8, 0.6), with n segments of different lengths.
-fn line(kind: CellKind, n: usize, up: bool, length: f64) -> Side {
+fn line(kind: CellKind, n: usize, up: bool, length: f64) -> MortarSide {
     let at = |t: f64| {
         let s = length * (t + 0.2 * t * (1.0 - t));
         [0.8 * s - 3.0, 0.6 * s + 1.0, 0.0]
@@ -89,9 +89,9 @@ fn line(kind: CellKind, n: usize, up: bool, length: f64) -> Side {
             nodes.push(points.len() as u32);
             points.push([0, 1, 2].map(|d| 0.5 * (a[d] + b[d])));
         }
-        faces.push(Face { kind, nodes });
+        faces.push(MortarFace { kind, nodes });
     }
-    Side::new(2, points, faces)
+    MortarSide::new(2, points, faces)
 }
 
 const SURFACES: [CellKind; 5] = [
@@ -105,8 +105,8 @@ const SURFACES: [CellKind; 5] = [
 /// The largest defect of rows between flat sides: sums of coefficients, linear functions, total of the areas, and
 /// nodal forces of a constant pressure on the nodes of both sides, where these lie opposite each other as a whole.
 fn defect(
-    side: &Side,
-    other: &Side,
+    side: &MortarSide,
+    other: &MortarSide,
     excluded: &dyn Fn(u32) -> bool,
     area: f64,
     whole: bool,

@@ -1,20 +1,20 @@
 //! Unit tests of `crates/elements/src/mortar/foot.rs`.
 
-use super::super::side::Face;
+use super::super::side::MortarFace;
 use super::*;
 
 /// A square of two by two faces of edge 1/2 in the plane z = 0, with the normal along z.
-fn square() -> Side {
+fn square() -> MortarSide {
     let points = (0..9).map(|k| [(k % 3) as f64 / 2.0, (k / 3) as f64 / 2.0, 0.0]);
     let face = |&[i, j]: &[u32; 2]| {
         let first = i + 3 * j;
-        Face {
+        MortarFace {
             kind: CellKind::Quad4,
             nodes: vec![first, first + 1, first + 4, first + 3],
         }
     };
     let faces = [[0, 0], [1, 0], [0, 1], [1, 1]].iter().map(face);
-    Side::new(3, points.collect(), faces.collect())
+    MortarSide::new(3, points.collect(), faces.collect())
 }
 
 #[test]
@@ -65,11 +65,11 @@ fn an_edge_between_faces_is_no_rim() {
         [1.0, 0.0, -1.0],
         [1.0, 1.0, -1.0],
     ];
-    let face = |nodes: Vec<u32>| Face {
+    let face = |nodes: Vec<u32>| MortarFace {
         kind: CellKind::Quad4,
         nodes,
     };
-    let side = Side::new(
+    let side = MortarSide::new(
         3,
         points,
         vec![face(vec![2, 0, 1, 3]), face(vec![0, 4, 5, 1])],
@@ -89,11 +89,11 @@ fn an_edge_between_faces_is_no_rim() {
 fn curved_faces_are_met_where_they_are() {
     // A parabola y = x² in the plane, as one segment of second order.
     let points = vec![[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
-    let face = Face {
+    let face = MortarFace {
         kind: CellKind::Line3,
         nodes: vec![0, 1, 2],
     };
-    let side = Side::new(2, points, vec![face]);
+    let side = MortarSide::new(2, points, vec![face]);
     let feet = Feet::new(&side);
     let (s, way) = (0.5, 0.05);
     let length = 2.0_f64.sqrt();

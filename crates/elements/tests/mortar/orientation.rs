@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::kind::CellKind;
-use crate::mortar::Side;
+use crate::mortar::MortarSide;
 use base::linalg::vec3::dot;
 
-fn faces(kind: CellKind, lists: &[&[u32]]) -> Vec<Face> {
-    let face = |nodes: &&[u32]| Face {
+fn faces(kind: CellKind, lists: &[&[u32]]) -> Vec<MortarFace> {
+    let face = |nodes: &&[u32]| MortarFace {
         kind,
         nodes: nodes.to_vec(),
     };
@@ -66,14 +66,14 @@ fn reversed_faces_have_opposite_normals() {
             _ if kind.corners() == 3 => triangle[..n].iter().map(|x| bent(*x)).collect(),
             _ => places[..n].iter().map(|x| bent(*x)).collect(),
         };
-        let one = vec![Face {
+        let one = vec![MortarFace {
             kind,
             nodes: (0..n as u32).collect(),
         }];
-        let side = Side::new(dim, points, one);
+        let side = MortarSide::new(dim, points, one);
         let back = side.reversed();
         assert_eq!(back.reversed(), side);
-        assert_eq!(Face::kind_of(dim, n), Some(kind));
+        assert_eq!(MortarFace::kind_of(dim, n), Some(kind));
         let (normals, others) = (side.normals(), back.normals());
         for (a, b) in normals.iter().zip(&others) {
             assert!(

@@ -7,21 +7,21 @@
 //! Where gaps around a cycle do not fit, some row of it must leave. Forces do not tell which one, cᵀλ does. Updates of
 //! multipliers move λ around cycles only by what springs give way; here the minimum is found at once.
 
-use super::groups::{components, multipliers, Signs};
-use super::rows::{Inequalities, Row};
+use super::groups::{components, multipliers, MultiplierSigns};
+use super::rows::{GapInequality, Inequalities};
 
 /// The slope of cᵀλ around cycles is zero below this, relative to the gaps.
 const LEVEL: f64 = 1e-12;
 
 /// Moves multipliers ≥ 0 to where cᵀλ is least among those with the same forces. Where it has no minimum, no
 /// displacement satisfies the rows of the cycle, and its multipliers stay.
-pub(super) fn settle(rows: &Inequalities, lambda: &mut [f64]) {
+pub(super) fn descend_around_cycles(rows: &Inequalities, lambda: &mut [f64]) {
     // A row leaves in each pass.
     for _ in 0..lambda.len() {
         let active: Vec<bool> = lambda.iter().map(|l| *l > 0.0).collect();
         let mut loads = vec![0.0; rows.ground()];
         for row in rows.list(&active).into_iter().map(|r| &rows.rows[r]) {
-            let Row { plus, minus, gap } = *row;
+            let GapInequality { plus, minus, gap } = *row;
             for (end, sign) in [(plus, 1.0), (minus, -1.0)] {
                 if let Some(load) = loads.get_mut(end) {
                     *load += sign * gap;
@@ -29,7 +29,7 @@ pub(super) fn settle(rows: &Inequalities, lambda: &mut [f64]) {
             }
         }
         // The part of c that is B w for some w. The rest is orthogonal to it, and against the rest cᵀλ falls.
-        let fits = multipliers(rows, &active, &loads, Signs::Any);
+        let fits = multipliers(rows, &active, &loads, MultiplierSigns::Any);
         let along = |r: usize| fits[r] - rows.rows[r].gap;
         let mut moved = false;
         for members in components(rows, &active) {

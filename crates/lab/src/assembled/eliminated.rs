@@ -29,14 +29,14 @@ pub enum Trouble {
 
 /// The dependent unknowns.
 #[derive(Debug, Default)]
-pub struct Eliminated {
+pub struct EliminatedUnknowns {
     /// Each in terms of unknowns that are not dependent, and the offset.
     of: BTreeMap<u64, (Terms, f64)>,
     /// The dependent unknowns in the order of their equations.
     order: Vec<u64>,
 }
 
-impl Eliminated {
+impl EliminatedUnknowns {
     /// Solves the equations, each given as terms and right-hand side. Of its unknowns an equation gives up the one with
     /// the largest product of coefficient and `weight`; unknowns of weight 0 stay.
     ///
@@ -45,8 +45,8 @@ impl Eliminated {
     pub fn new(
         equations: impl IntoIterator<Item = (Vec<(u64, f64)>, f64)>,
         weight: &dyn Fn(u64) -> f64,
-    ) -> Result<Eliminated, Trouble> {
-        let mut out = Eliminated::default();
+    ) -> Result<EliminatedUnknowns, Trouble> {
+        let mut out = EliminatedUnknowns::default();
         // The dependent unknowns in whose terms an unknown is.
         let mut users: HashMap<u64, HashSet<u64>> = HashMap::new();
         for (terms, rhs) in equations {

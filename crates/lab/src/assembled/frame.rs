@@ -15,24 +15,24 @@ const SAME: f64 = 1e-10;
 
 /// w = M u and u = T w at one node. Rows beyond the number of components are those of the identity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
+pub struct NodeFrame {
     /// M, from u to w.
     pub to: [[f64; 3]; 3],
     /// T = M⁻¹, from w to u.
     pub from: [[f64; 3]; 3],
 }
 
-impl Frame {
+impl NodeFrame {
     /// The identity: w = u.
-    pub const IDENTITY: Frame = Frame {
+    pub const IDENTITY: NodeFrame = NodeFrame {
         to: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         from: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
     /// A frame with these directions; each has entries in the `free` components only. `None` where they are not
     /// independent.
-    pub fn new(directions: &[[f64; 3]], free: [bool; 3]) -> Option<Frame> {
-        let mut to = Frame::IDENTITY.to;
+    pub fn new(directions: &[[f64; 3]], free: [bool; 3]) -> Option<NodeFrame> {
+        let mut to = NodeFrame::IDENTITY.to;
         let mut open = free;
         // An orthonormal basis of the rows of M found so far.
         let mut span: Vec<[f64; 3]> = Vec::new();
@@ -51,10 +51,10 @@ impl Frame {
         for slot in (0..3).filter(|&c| open[c]) {
             let axes = (0..3)
                 .filter(|&c| free[c])
-                .map(|c| beside(&span, Frame::IDENTITY.to[c]));
+                .map(|c| beside(&span, NodeFrame::IDENTITY.to[c]));
             // The axis with this number is taken where it is independent: frames of directions along axes are the
             // identity.
-            let own = beside(&span, Frame::IDENTITY.to[slot]);
+            let own = beside(&span, NodeFrame::IDENTITY.to[slot]);
             let best = axes.max_by(|a, b| norm(*a).total_cmp(&norm(*b)))?;
             let rest = if norm(own) > 0.3 { own } else { best };
             let size = norm(rest);
@@ -62,12 +62,12 @@ impl Frame {
             span.push(to[slot]);
         }
         let from = inverse(&to)?;
-        Some(Frame { to, from })
+        Some(NodeFrame { to, from })
     }
 
     /// Whether w = u.
     pub fn is_identity(&self) -> bool {
-        *self == Frame::IDENTITY
+        *self == NodeFrame::IDENTITY
     }
 
     /// The component of w along a direction; where none is, the one that has most of it.

@@ -20,7 +20,7 @@ const BALANCED: f64 = 1e-10;
 
 /// The groups of one active set.
 #[derive(Debug, Clone)]
-pub struct Groups {
+pub struct ActiveGroups {
     /// For every unknown of [`Inequalities::unknowns`] the lowest unknown of its group; `None` where the group is tied
     /// to ground.
     pub lead: Vec<Option<usize>>,
@@ -30,10 +30,10 @@ pub struct Groups {
     pub holds: Vec<bool>,
 }
 
-impl Groups {
+impl ActiveGroups {
     /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is
     /// taken out of `active`.
-    pub fn new(rows: &Inequalities, active: &mut [bool], priority: &[usize]) -> Groups {
+    pub fn new(rows: &Inequalities, active: &mut [bool], priority: &[usize]) -> ActiveGroups {
         let largest = rows.rows.iter().fold(0.0f64, |a, r| a.max(r.gap.abs()));
         let n = rows.ground();
         let mut sets = Potentials::new(n + 1);
@@ -58,11 +58,11 @@ impl Groups {
                 offset.push(u - its);
             }
         }
-        let mut follows = |r: &super::rows::Row| {
+        let mut follows = |r: &super::rows::GapInequality| {
             let ((a, u_a), (b, u_b)) = (sets.find(r.plus), sets.find(r.minus));
             a == b && r.plus != r.minus && (u_a - u_b - r.gap).abs() <= SAME * largest
         };
-        Groups {
+        ActiveGroups {
             lead,
             offset,
             holds: rows.rows.iter().map(&mut follows).collect(),
@@ -104,7 +104,7 @@ impl Groups {
 
 /// Which multipliers of rows that depend on each other are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Signs {
+pub enum MultiplierSigns {
     /// The shortest.
     Any,
     /// Multipliers that do not pull, where there are such.
@@ -131,7 +131,12 @@ pub(super) fn components(rows: &Inequalities, active: &[bool]) -> Vec<Vec<usize>
 
 /// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other
 /// rows. `r` is given at the unknowns in rows.
-pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs) -> Vec<f64> {
+pub fn multipliers(
+    rows: &Inequalities,
+    active: &[bool],
+    r: &[f64],
+    signs: MultiplierSigns,
+) -> Vec<f64> {
     let ground = rows.ground();
     let mut lambda = vec![0.0; rows.len()];
     for members in &components(rows, active) {
@@ -168,7 +173,7 @@ pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs
         for &k in members {
             lambda[k] = at(rows.rows[k].plus) - at(rows.rows[k].minus);
         }
-        if signs == Signs::Pushing && members.iter().any(|&k| lambda[k] < 0.0) {
+        if signs == MultiplierSigns::Pushing && members.iter().any(|&k| lambda[k] < 0.0) {
             let to = |k: usize, j: usize| {
                 let of = |end: usize| f64::from(place(end) == Some(k));
                 of(rows.rows[members[j]].plus) - of(rows.rows[members[j]].minus)

@@ -1,6 +1,6 @@
 //! The verdict of a solution on its active set: which rows are wrong, and which set follows.
 
-use super::outer::Certificate;
+use super::outer::OuterCertificate;
 use super::refine::over;
 use super::rows::Inequalities;
 
@@ -59,10 +59,10 @@ impl Judged {
     }
 
     /// The certificate, given the last correction of u.
-    pub fn certificate(&self, correction: f64) -> Certificate {
+    pub fn certificate(&self, correction: f64) -> OuterCertificate {
         let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
         let pull = Some(most(&self.lambda, -1.0)).filter(|pull| *pull > self.none);
-        Certificate {
+        OuterCertificate {
             correction,
             feasibility: over(most(&self.gaps, 1.0), self.largest[1]),
             pull: over(pull.unwrap_or(0.0), self.largest[0]),

@@ -7,7 +7,7 @@
 //! ```
 
 mod cycles;
-mod damped;
+mod damped_newton;
 mod eliminated;
 pub mod frame;
 pub mod groups;

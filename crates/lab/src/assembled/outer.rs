@@ -10,7 +10,7 @@
 //! careful: exact solves first, then one row at a time.
 //!
 //! These sets need not settle. If a set comes back again, if there are too many, or if the last row that holds a body
-//! pulls, the sets come from a method that converges (see [`Search`]). Each of its sets is
+//! pulls, the sets come from a method that converges (see [`DampedNewton`]). Each of its sets is
 //! tried: its equations are solved, and the sets that follow by the rule above, for as long as there are fewer and
 //! fewer wrong rows. The loop ends with the first set that satisfies all conditions. So the method guarantees the end,
 //! and the trials give the accuracy.
@@ -18,8 +18,8 @@
 use std::collections::HashSet;
 use std::time::Instant;
 
-use super::damped::Search;
-use super::groups::{multipliers, Groups, Signs};
+use super::damped_newton::DampedNewton;
+use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
 use super::judged::Judged;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
@@ -51,7 +51,7 @@ pub struct Tolerances {
 
 /// How the equations of one active set are solved.
 #[derive(Clone, Copy)]
-pub enum Solve<'a> {
+pub enum OuterSolve<'a> {
     /// One solve.
     Once,
     /// This many solves, of which all but the first refine a direct solution.
@@ -81,7 +81,7 @@ pub struct ActiveSetEnd {
     /// Residual, relative to the load.
     pub residual: f64,
     /// How well the conditions of optimality hold.
-    pub certificate: Certificate,
+    pub certificate: OuterCertificate,
     /// Whether the set has settled and the residual is small enough; where the solution is refined, whether the
     /// certificate holds.
     pub converged: bool,
@@ -91,7 +91,7 @@ pub struct ActiveSetEnd {
 
 /// How well the conditions of optimality hold, each relative to the size of its terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Certificate {
+pub struct OuterCertificate {
     /// The last correction of a refinement relative to the solution, in the energy norm or by the largest displacement,
     /// whichever is larger. It bounds the error in u even where the residual is small against its terms.
     pub correction: f64,
@@ -101,7 +101,7 @@ pub struct Certificate {
     pub pull: f64,
 }
 
-impl Certificate {
+impl OuterCertificate {
     /// The largest of the three.
     pub fn largest(&self) -> f64 {
         self.correction.max(self.feasibility).max(self.pull)
@@ -135,7 +135,7 @@ pub fn solve(
     reduced: &Reduced,
     solvers: &mut Solvers,
     tolerances: Tolerances,
-    solve: Solve,
+    solve: OuterSolve,
     given: Option<&[bool]>,
 ) -> Result<ActiveSetEnd> {
     let (whole, mut setup) = (Instant::now(), 0.0);
@@ -147,8 +147,8 @@ pub fn solve(
     let (mut steps, mut iterations, mut tight) = (0, 0, given.is_some());
     // The active set for which the preconditioner was built.
     let mut built: Vec<bool> = Vec::new();
-    let mut groups: Option<Groups> = None;
-    let mut search: Option<Search> = None;
+    let mut groups: Option<ActiveGroups> = None;
+    let mut search: Option<DampedNewton> = None;
     // Why `search` was begun, and the least number of wrong rows in the present trial.
     let (mut why_search, mut fewest) = ("DIVERGED_CONTACT_ITS", 0);
     let mut ksp = solvers()?;
@@ -156,7 +156,7 @@ pub fn solve(
         let now = match groups.take() {
             Some(groups) => groups,
             None => {
-                let groups = Groups::new(rows, &mut active, &priority);
+                let groups = ActiveGroups::new(rows, &mut active, &priority);
                 let changed = active.iter().zip(&built).filter(|(a, b)| a != b).count();
                 let stale = changed as f64 > tolerances.lag * rows.len() as f64;
                 let build = built.is_empty() || stale;
@@ -189,16 +189,16 @@ pub fn solve(
         };
         let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
         let (mut failed, mut correction) = (false, 0.0);
-        if let Solve::Refined(refiner) = solve {
+        if let OuterSolve::Refined(refiner) = solve {
             let refined = refiner.refine(&now, &ksp, &v)?;
             (residual, correction) = (refined.residual, refined.correction);
             (reason, failed) = refined.reason;
             iterations += refined.rounds;
         }
         let solves = match solve {
-            Solve::Once => usize::from(residual > stop),
-            Solve::Repeated(solves) => solves,
-            Solve::Refined(_) => 0,
+            OuterSolve::Once => usize::from(residual > stop),
+            OuterSolve::Repeated(solves) => solves,
+            OuterSolve::Refined(_) => 0,
         };
         for _ in 0..solves {
             ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;
@@ -214,12 +214,12 @@ pub fn solve(
 
         let at = reduced.trace.get(session.comm(), &u)?;
         let forces = match solve {
-            Solve::Refined(refiner) => refiner.forces(&u)?,
+            OuterSolve::Refined(refiner) => refiner.forces(&u)?,
             _ => reduced.forces(&u)?,
         };
         let signs = match search {
-            Some(_) => Signs::Pushing,
-            None => Signs::Any,
+            Some(_) => MultiplierSigns::Pushing,
+            None => MultiplierSigns::Any,
         };
         let lambda = multipliers(rows, &active, &forces, signs);
         let sizes = (u.norm_inf()?, reference);
@@ -233,7 +233,7 @@ pub fn solve(
         let restored = rows.restore(&mut next, &judged.score);
         let stays = next == active;
         let to_the_end = stop <= target;
-        let refined = matches!(solve, Solve::Refined(_));
+        let refined = matches!(solve, OuterSolve::Refined(_));
         // Sets that come back differ only in rows that rounding decides.
         let right = if refined {
             caution != Caution::Loose && certificate.holds()
@@ -256,7 +256,7 @@ pub fn solve(
             Some((!refined || met, reason))
         } else if settled && to_the_end && held {
             Some((met, reason))
-        } else if worse && search.as_ref().is_some_and(Search::is_exhausted) {
+        } else if worse && search.as_ref().is_some_and(DampedNewton::is_exhausted) {
             Some((false, why_search.to_string()))
         } else {
             None
@@ -286,7 +286,7 @@ pub fn solve(
         let back = !visited.insert(next.clone());
         if search.is_none() {
             if loose || steps >= STEPS || (back && caution == Caution::Single) {
-                search = Some(Search::new(session, rows, reduced)?);
+                search = Some(DampedNewton::new(session, rows, reduced)?);
                 why_search = if loose {
                     "DIVERGED_CONTACT_LOOSE"
                 } else {

@@ -1,24 +1,24 @@
 //! K, f and the inequalities of a scene, and how far vectors are from satisfying them.
 
-use super::groups::Groups;
+use super::groups::ActiveGroups;
 use super::rows::Inequalities;
-use super::system::{Format, System};
+use super::system::{AssembledSystem, MatrixFormat};
 use super::unknowns::{Trace, Unknowns};
 use base::Result;
 use petsc::{Session, Vec as PetscVec};
 use scene::Scene;
 
 /// The assembled problem of a scene with its inequalities.
-pub struct Problem {
+pub struct AssembledProblem {
     /// K and f.
-    pub system: System,
+    pub system: AssembledSystem,
     /// The inequalities; none where the scene has no contact.
     pub rows: Inequalities,
     /// Access to the entries of vectors at the unknowns in rows.
     pub trace: Trace,
 }
 
-impl Problem {
+impl AssembledProblem {
     /// Assembles the scene. Collective.
     ///
     /// # Errors
@@ -27,16 +27,16 @@ impl Problem {
         session: &Session,
         scene: &Scene,
         unknowns: &Unknowns,
-        format: Format,
-    ) -> Result<Problem> {
-        let system = System::new(session, scene, unknowns, format)?;
+        format: MatrixFormat,
+    ) -> Result<AssembledProblem> {
+        let system = AssembledSystem::new(session, scene, unknowns, format)?;
         let rows = if scene.has_contact() {
             Inequalities::new(scene, unknowns.layout)
         } else {
             Inequalities::default()
         };
         let trace = Trace::new(&rows, &system.b);
-        Ok(Problem {
+        Ok(AssembledProblem {
             system,
             rows,
             trace,
@@ -45,9 +45,9 @@ impl Problem {
 
     /// The groups of an active set. Rows are imposed in their order; a row that contradicts earlier ones is removed
     /// from the set.
-    pub fn groups(&self, active: &mut [bool]) -> Groups {
+    pub fn groups(&self, active: &mut [bool]) -> ActiveGroups {
         let in_order: Vec<usize> = (0..self.rows.len()).collect();
-        Groups::new(&self.rows, active, &in_order)
+        ActiveGroups::new(&self.rows, active, &in_order)
     }
 
     /// ‖Tᵀ(f − K u)‖₂ relative to the load: the part of the residual that multipliers of the active rows cannot
@@ -55,7 +55,12 @@ impl Problem {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn stationarity(&self, session: &Session, groups: &Groups, u: &PetscVec) -> Result<f64> {
+    pub fn stationarity(
+        &self,
+        session: &Session,
+        groups: &ActiveGroups,
+        u: &PetscVec,
+    ) -> Result<f64> {
         let r = u.duplicate()?;
         let folded = |x: &PetscVec| -> Result<f64> {
             self.system.residual(x, &r)?;

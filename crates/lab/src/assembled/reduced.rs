@@ -6,10 +6,10 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::groups::Groups;
+use super::groups::ActiveGroups;
 use super::near::NearKernel;
 use super::rows::Inequalities;
-use super::system::System;
+use super::system::AssembledSystem;
 use super::unknowns::Trace;
 use base::Result;
 use parallel::exchange::sum_all;
@@ -51,7 +51,7 @@ impl Reduced {
     /// PETSc's.
     pub fn new(
         session: &Session,
-        system: &System,
+        system: &AssembledSystem,
         rows: &Inequalities,
         kernel: NearKernel,
     ) -> Result<Reduced> {
@@ -130,7 +130,7 @@ impl Reduced {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn update(&self, groups: &Groups) -> Result<()> {
+    pub fn update(&self, groups: &ActiveGroups) -> Result<()> {
         let mine: Vec<i32> = self.touched.iter().map(|(_, row)| row.row).collect();
         self.a.zero_rows(&mine)?;
         // The lowest unknown of the group of this one.
@@ -196,7 +196,7 @@ impl Reduced {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn rhs(&self, groups: &Groups) -> Result<PetscVec> {
+    pub fn rhs(&self, groups: &ActiveGroups) -> Result<PetscVec> {
         let b = self.vector()?;
         b.copy_from(&self.f)?;
         let mut led = vec![0.0; self.unknowns.len()];
@@ -243,7 +243,7 @@ impl Reduced {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn start(&self, groups: &Groups, u: &PetscVec) -> Result<PetscVec> {
+    pub fn start(&self, groups: &ActiveGroups, u: &PetscVec) -> Result<PetscVec> {
         let v = self.vector()?;
         v.copy_from(u)?;
         let at = self.trace.get(self.comm(), u)?;
@@ -267,7 +267,7 @@ impl Reduced {
 /// The matrix with room for all sets: rows of K that no set changes, and zeros in the others. Collective.
 fn pattern(
     session: &Session,
-    system: &System,
+    system: &AssembledSystem,
     rows: &Inequalities,
     trace: &Trace,
     touched: &[(Option<usize>, KRow)],

@@ -3,14 +3,14 @@
 //! MUMPS factors the assembled matrix; with inequalities, an active-set loop surrounds it. Every solution is refined,
 //! by default with residuals in twice the working precision. It runs on any number of ranks.
 
-use super::layout::Layout;
+use super::layout::UnknownLayout;
 use super::near::{Near, NearKernel};
-use super::outer::{ActiveSetEnd, Solve, Tolerances};
-use super::problem::Problem;
+use super::outer::{ActiveSetEnd, OuterSolve, Tolerances};
+use super::problem::AssembledProblem;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
 use super::strain::{energy_norm, values};
-use super::system::{Copies, Format};
+use super::system::{Copies, MatrixFormat};
 use super::unknowns::Unknowns;
 use crate::assembled::outer;
 use base::{Error, Result};
@@ -32,7 +32,7 @@ const BALANCED: f64 = 1e-8;
 
 /// The precision in which residuals are summed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
+pub enum ResidualPrecision {
     /// Working precision: the accuracy of MUMPS with iterative refinement.
     Working,
     /// Twice the working precision: for the reference solution that errors are measured against.
@@ -42,9 +42,9 @@ pub enum Precision {
 /// The direct solution of a scene at its last load step.
 pub struct Reference<'a> {
     session: Session,
-    layout: &'a Layout<'a>,
+    layout: &'a UnknownLayout<'a>,
     /// The assembled problem.
-    pub problem: Problem,
+    pub problem: AssembledProblem,
     /// Its solution.
     pub found: ActiveSetEnd,
 }
@@ -59,8 +59,8 @@ impl<'a> Reference<'a> {
     pub fn new(
         session: &Session,
         scene: &Scene,
-        layout: &'a Layout<'a>,
-        precision: Precision,
+        layout: &'a UnknownLayout<'a>,
+        precision: ResidualPrecision,
         given: Option<&[bool]>,
     ) -> Result<Reference<'a>> {
         if let Some(trouble) = &layout.trouble {
@@ -72,13 +72,13 @@ impl<'a> Reference<'a> {
             ));
         }
         let unknowns = Unknowns::all(layout);
-        let problem = Problem::new(session, scene, &unknowns, Format::Assembled)?;
+        let problem = AssembledProblem::new(session, scene, &unknowns, MatrixFormat::Assembled)?;
         let refiner;
         let solve = match precision {
-            Precision::Working => Solve::Repeated(SOLVES),
-            Precision::Twice => {
+            ResidualPrecision::Working => OuterSolve::Repeated(SOLVES),
+            ResidualPrecision::Twice => {
                 refiner = Refiner::new(session, &problem.system, &problem.trace)?;
-                Solve::Refined(&refiner)
+                OuterSolve::Refined(&refiner)
             }
         };
         let kernel = NearKernel::new(scene, &unknowns, &problem.system.b, Near::None)?;
@@ -124,9 +124,9 @@ impl<'a> Reference<'a> {
     pub fn certified(
         session: &Session,
         scene: &Scene,
-        layout: &'a Layout<'a>,
+        layout: &'a UnknownLayout<'a>,
     ) -> Result<Reference<'a>> {
-        let out = Reference::new(session, scene, layout, Precision::Twice, None)?;
+        let out = Reference::new(session, scene, layout, ResidualPrecision::Twice, None)?;
         let found = &out.found;
         if !found.converged {
             let c = found.certificate;
@@ -167,7 +167,7 @@ impl<'a> Reference<'a> {
         copies: Copies,
     ) -> Result<[f64; 2]> {
         let mut values = self.values(subdomains)?;
-        idle::settle(self.session.comm(), subdomains, &mut values);
+        idle::remove_idle(self.session.comm(), subdomains, &mut values);
         let most = |list: &[Vec<f64>]| list.iter().flatten().fold(0.0f64, |a, v| a.max(v.abs()));
         let size = most(&values);
         for (values, u) in values.iter_mut().zip(u) {

@@ -7,8 +7,8 @@
 //! A few rounds remove the error that a factor in working precision leaves in u: then u is the solution of the
 //! assembled problem, rounded once.
 
-use super::groups::Groups;
-use super::system::System;
+use super::groups::ActiveGroups;
+use super::system::AssembledSystem;
 use super::unknowns::Trace;
 use base::linalg::twice::Twice;
 use base::Result;
@@ -26,7 +26,7 @@ const GAIN: f64 = 0.5;
 /// The data for products with K in twice the precision.
 pub struct Refiner<'a> {
     session: Session,
-    system: &'a System,
+    system: &'a AssembledSystem,
     trace: &'a Trace,
     /// Columns of this rank's rows that other ranks own, increasing, and the plan that communicates u there.
     ghosts: Vec<i32>,
@@ -51,7 +51,11 @@ impl<'a> Refiner<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(session: &Session, system: &'a System, trace: &'a Trace) -> Result<Refiner<'a>> {
+    pub fn new(
+        session: &Session,
+        system: &'a AssembledSystem,
+        trace: &'a Trace,
+    ) -> Result<Refiner<'a>> {
         let range = system.a.ownership_range()?;
         let mut ghosts: Vec<i32> = Vec::new();
         for row in range.clone() {
@@ -123,7 +127,7 @@ impl<'a> Refiner<'a> {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn refine(&self, groups: &Groups, ksp: &Ksp, v: &PetscVec) -> Result<Refined> {
+    pub fn refine(&self, groups: &ActiveGroups, ksp: &Ksp, v: &PetscVec) -> Result<Refined> {
         let (u, r, d) = (v.duplicate()?, v.duplicate()?, v.duplicate()?);
         let mut out = Refined {
             residual: 0.0,

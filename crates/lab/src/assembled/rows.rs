@@ -2,12 +2,12 @@
 //!
 //! Every row bounds a difference, w_p − w_m ≤ g, where p or m may be *ground*, at which w = 0. Rows of contact pairs
 //! have two nodes, rows beside an obstacle or a prescribed value one. Along normals that are not parallel to an axis, w
-//! are the coordinates of u in a frame (see [`Frame`](super::frame::Frame)). Mortar rows have more nodes, and each has
-//! an unknown w of its own ([`Layout`]). There are few rows, and every rank has all of them.
+//! are the coordinates of u in a frame (see [`NodeFrame`](super::frame::NodeFrame)). Mortar rows have more nodes, and
+//! each has an unknown w of its own ([`UnknownLayout`]). There are few rows, and every rank has all of them.
 
 use std::collections::BTreeMap;
 
-use super::layout::Layout;
+use super::layout::UnknownLayout;
 use super::motions::{Echelon, Functional};
 use super::potentials::Potentials;
 use fetifeti::problem::RowKind;
@@ -16,7 +16,7 @@ use scene::Scene;
 /// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for
 /// ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct GapInequality {
     /// Index of the unknown with coefficient 1.
     pub plus: usize,
     /// Index of the unknown with coefficient −1.
@@ -31,7 +31,7 @@ pub struct Inequalities {
     /// Unknowns in some row, increasing.
     pub unknowns: Vec<u64>,
     /// The rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<GapInequality>,
     /// Whether each row is active at the start.
     pub initial: Vec<bool>,
     /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
@@ -44,7 +44,7 @@ pub struct Inequalities {
 
 impl Inequalities {
     /// The inequalities of `scene`. The rows are meaningless where `layout.trouble` is set.
-    pub fn new(scene: &Scene, layout: &Layout) -> Inequalities {
+    pub fn new(scene: &Scene, layout: &UnknownLayout) -> Inequalities {
         let all = scene.rows(&|_| true);
         let subdomains = scene
             .points
@@ -69,7 +69,7 @@ impl Inequalities {
             let (places, scale) = bound.unwrap_or(([None; 2], 1.0));
             ends.push(places);
             out.initial.push(row.holds);
-            out.rows.push(Row {
+            out.rows.push(GapInequality {
                 plus: 0,
                 minus: 0,
                 gap: row.gap / scale,
@@ -127,7 +127,7 @@ impl Inequalities {
     /// B u − c from u at [`Inequalities::unknowns`].
     pub fn gaps(&self, u: &[f64]) -> Vec<f64> {
         let at = |k: usize| u.get(k).copied().unwrap_or(0.0);
-        let gap = |r: &Row| at(r.plus) - at(r.minus) - r.gap;
+        let gap = |r: &GapInequality| at(r.plus) - at(r.minus) - r.gap;
         self.rows.iter().map(gap).collect()
     }
 

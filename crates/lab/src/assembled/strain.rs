@@ -5,8 +5,8 @@
 //! difference has rounding of ε ‖K‖ |r|², of either sign, which can be 1e-3 of the solution. The energy is therefore
 //! that of w − r, subdomain by subdomain.
 
-use super::layout::Layout;
-use super::system::System;
+use super::layout::UnknownLayout;
+use super::system::AssembledSystem;
 use base::linalg::strained::{strained, RIGID};
 use base::Result;
 use fetifeti::Subdomain;
@@ -20,8 +20,8 @@ use petsc::{Scatter, Session, Vec as PetscVec};
 /// As [`Scene::subdomain`](scene::Scene::subdomain), and PETSc's.
 pub fn energy_norm(
     session: &Session,
-    layout: &Layout,
-    system: &System,
+    layout: &UnknownLayout,
+    system: &AssembledSystem,
     w: &PetscVec,
 ) -> Result<f64> {
     let plain = system.energy_norm(w)?;
@@ -49,7 +49,7 @@ pub fn energy_norm(
 /// PETSc's.
 pub fn values(
     session: &Session,
-    layout: &Layout,
+    layout: &UnknownLayout,
     w: &PetscVec,
     subdomains: &[Subdomain],
     offsets: bool,

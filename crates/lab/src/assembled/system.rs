@@ -9,12 +9,12 @@ use parallel::contiguous_share;
 use petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
 use scene::Scene;
 
-use super::layout::Layout;
+use super::layout::UnknownLayout;
 use super::unknowns::Unknowns;
 
 /// The format of the matrix that a method takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum MatrixFormat {
     /// One assembled matrix (AIJ), rows in equal shares.
     Assembled,
     /// One matrix per part of the domain, unassembled (MATIS).
@@ -31,7 +31,7 @@ pub enum Copies {
 }
 
 /// The assembled problem on N unknowns.
-pub struct System {
+pub struct AssembledSystem {
     /// A, N × N, symmetric positive definite unless bodies are held by inequalities only.
     pub a: Mat,
     /// b, length N.
@@ -42,7 +42,7 @@ pub struct System {
     pub fields: Vec<usize>,
 }
 
-impl System {
+impl AssembledSystem {
     /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix; the
     /// assembled format is converted from the unassembled one. Collective.
     ///
@@ -52,16 +52,16 @@ impl System {
         session: &Session,
         scene: &Scene,
         unknowns: &Unknowns,
-        format: Format,
-    ) -> Result<System> {
+        format: MatrixFormat,
+    ) -> Result<AssembledSystem> {
         let (ranks, rank) = (session.size(), session.rank());
         let share = contiguous_share(scene.n_subdomains(), ranks, rank);
         let mine: Result<Vec<Subdomain>> = share.clone().map(|s| scene.subdomain(s)).collect();
         let mine = session.agree(mine)?;
-        let part = Part::new(session, &mine, unknowns)?;
+        let part = MergedSubdomain::new(session, &mine, unknowns)?;
         let owned = match format {
-            Format::Assembled => unknowns.share(ranks, rank),
-            Format::Unassembled => unknowns.range(share),
+            MatrixFormat::Assembled => unknowns.share(ranks, rank),
+            MatrixFormat::Unassembled => unknowns.range(share),
         };
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
@@ -78,8 +78,8 @@ impl System {
         let unassembled = Mat::unassembled(session, owned.len(), &part.unknowns, &part.k)?;
         let fields = part.fields;
         let a = match format {
-            Format::Assembled => unassembled.convert("aij")?,
-            Format::Unassembled => unassembled,
+            MatrixFormat::Assembled => unassembled.convert("aij")?,
+            MatrixFormat::Unassembled => unassembled,
         };
         let held = unknowns.are_free() && scene.has_contact();
         a.set_flag(if held {
@@ -87,7 +87,7 @@ impl System {
         } else {
             MatFlag::Spd
         })?;
-        Ok(System {
+        Ok(AssembledSystem {
             a,
             b,
             reference,
@@ -160,19 +160,19 @@ impl System {
         scatter.reverse_add(&PetscVec::from_slice(session, &weights)?, &weight)?;
         let mean = self.b.duplicate()?;
         mean.pointwise_divide(&sum, &weight)?;
-        unknowns.layout.settle(session, &mean)?;
+        unknowns.layout.to_unknowns(session, &mean)?;
         Ok((mean, weight))
     }
 }
 
 /// The place in the layout of every dof of the subdomains.
-fn places(subdomains: &[Subdomain], layout: &Layout) -> Vec<i32> {
+fn places(subdomains: &[Subdomain], layout: &UnknownLayout) -> Vec<i32> {
     let dofs = subdomains.iter().flat_map(|s| &s.dofs);
     dofs.map(|&dof| layout.index(dof) as i32).collect()
 }
 
 /// ‖f‖₂ over the components of u. Collective.
-fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &Layout) -> Result<f64> {
+fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &UnknownLayout) -> Result<f64> {
     let share = layout.share(session.size(), session.rank());
     let f = PetscVec::mpi(session, share.len())?;
     let local: Vec<f64> = subdomains.iter().flat_map(|s| s.f.clone()).collect();
@@ -182,7 +182,7 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &Layout) -> Resul
 }
 
 /// The subdomains of one rank, merged into one: the subdomain of PETSc's domain decompositions.
-struct Part {
+struct MergedSubdomain {
     /// Global unknown of each local one, increasing.
     unknowns: Vec<i32>,
     /// The component of each unknown.
@@ -194,8 +194,8 @@ struct Part {
 /// u at the dofs of a subdomain in terms of local unknowns: (unknown, coefficient) pairs and an offset.
 type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
 
-impl Part {
-    fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<Part> {
+impl MergedSubdomain {
+    fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<MergedSubdomain> {
         let mut unknowns: Vec<i32> = Vec::new();
         for &dof in subdomains.iter().flat_map(|s| &s.dofs) {
             unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as i32));
@@ -265,7 +265,7 @@ impl Part {
             }
             _ => Vec::new(),
         };
-        Ok(Part {
+        Ok(MergedSubdomain {
             unknowns,
             fields,
             k,

@@ -1,7 +1,7 @@
 //! The unknowns of an assembled problem: those of the scene's layout, or those that remain for an active set.
 
-use super::groups::Groups;
-use super::layout::Layout;
+use super::groups::ActiveGroups;
+use super::layout::UnknownLayout;
 use super::rows::Inequalities;
 use base::Result;
 use mpi::topology::SimpleCommunicator;
@@ -11,21 +11,21 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 /// The value at an unknown: an entry of the vector of unknowns, if any, plus an offset.
-pub type Place = (Option<u64>, f64);
+pub type AffineUnknown = (Option<u64>, f64);
 
-/// Unknowns v in which active rows are further ties: w = T v + w₀ (see [`Groups`]).
+/// Unknowns v in which active rows are further ties: w = T v + w₀ (see [`ActiveGroups`]).
 pub struct Unknowns<'a> {
     /// The unknowns w of the scene.
-    pub layout: &'a Layout<'a>,
+    pub layout: &'a UnknownLayout<'a>,
     /// Places of w that are not in v, increasing.
     gone: Vec<u64>,
     /// For unknowns in rows, the lowest unknown of their group and the offset.
-    led: HashMap<u64, Place>,
+    led: HashMap<u64, AffineUnknown>,
 }
 
 impl<'a> Unknowns<'a> {
     /// v = w.
-    pub fn all(layout: &'a Layout<'a>) -> Unknowns<'a> {
+    pub fn all(layout: &'a UnknownLayout<'a>) -> Unknowns<'a> {
         Unknowns {
             layout,
             gone: Vec::new(),
@@ -34,7 +34,7 @@ impl<'a> Unknowns<'a> {
     }
 
     /// The unknowns w without the void places.
-    pub fn dense(layout: &'a Layout<'a>) -> Unknowns<'a> {
+    pub fn dense(layout: &'a UnknownLayout<'a>) -> Unknowns<'a> {
         Unknowns {
             layout,
             gone: layout.void().to_vec(),
@@ -43,7 +43,11 @@ impl<'a> Unknowns<'a> {
     }
 
     /// One unknown per group, and none at void places.
-    pub fn merged(layout: &'a Layout<'a>, rows: &Inequalities, groups: &Groups) -> Unknowns<'a> {
+    pub fn merged(
+        layout: &'a UnknownLayout<'a>,
+        rows: &Inequalities,
+        groups: &ActiveGroups,
+    ) -> Unknowns<'a> {
         let each = rows.unknowns.iter().enumerate();
         let led = each.clone().filter(|(k, _)| !groups.is_free(*k));
         let mut gone: Vec<u64> = led.map(|(_, &unknown)| unknown).collect();
@@ -110,7 +114,7 @@ impl<'a> Unknowns<'a> {
         (void, void.contains(&at))
     }
 
-    fn of(&self, unknown: u64) -> Place {
+    fn of(&self, unknown: u64) -> AffineUnknown {
         if self.layout.void().binary_search(&unknown).is_ok() {
             return (None, 0.0);
         }
@@ -140,7 +144,7 @@ impl<'a> Unknowns<'a> {
     pub fn spread(&self, session: &Session, v: &PetscVec) -> Result<PetscVec> {
         let share = self.layout.share(session.size(), session.rank());
         let u = PetscVec::mpi(session, share.len())?;
-        let places: Vec<Place> = share.map(|unknown| self.of(unknown as u64)).collect();
+        let places: Vec<AffineUnknown> = share.map(|unknown| self.of(unknown as u64)).collect();
         let known = places.iter().filter_map(|(lead, _)| *lead);
         let leads: Vec<i32> = known.map(|lead| lead as i32).collect();
         let values = PetscVec::seq(session, leads.len())?;
@@ -200,7 +204,7 @@ impl Trace {
     pub fn spread(
         &self,
         comm: &SimpleCommunicator,
-        groups: &Groups,
+        groups: &ActiveGroups,
         v: &PetscVec,
         u: &PetscVec,
     ) -> Result<()> {

@@ -8,8 +8,8 @@ use mpi::traits::Communicator;
 
 use super::launch::{Failure, Launcher, Workspace};
 use super::methods::{facts, forwarded, judged, row, sentence, stopped, Methods, Ran};
-use super::plan::{Layouts, Plan};
-use super::table::Case;
+use super::plan::{BaselinePlan, Layouts};
+use super::table::BaselineCase;
 use crate::baselines::table;
 use base::Result;
 use petsc::signals::Signals;
@@ -43,11 +43,11 @@ pub struct Comparison {
 pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
     let scene = distribution::load(session, &wanted.scene)?;
     let baselines = session.agree(table::select(&wanted.with))?;
-    let plan = Plan::new(session, &scene, &baselines, Layouts::Two)?;
+    let plan = BaselinePlan::new(session, &scene, &baselines, Layouts::Two)?;
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
-            baseline.set_options(session, plan.rtol, Case::of(&scene))?;
+            baseline.set_options(session, plan.rtol, BaselineCase::of(&scene))?;
         }
     }
     on_first_rank(session, || run(session, wanted, &scene, &plan))
@@ -75,7 +75,7 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 }
 
 /// On rank 0: all jobs one after the other, then the judge, then the tables.
-fn run(session: &Session, wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
+fn run(session: &Session, wanted: &Comparison, scene: &Scene, plan: &BaselinePlan) -> Result<()> {
     let Comparison { destination, .. } = wanted;
     destination.prepare()?;
     // Temporary files go when a signal ends this.

@@ -7,12 +7,12 @@ use super::linear::{kappa, solver};
 use super::second::SecondLoad;
 use super::table::Baseline;
 use super::task::{ContactOutcome, Job, Outcome};
-use crate::assembled::layout::Layout;
+use crate::assembled::layout::UnknownLayout;
 use crate::assembled::near::NearKernel;
-use crate::assembled::outer::{self, Solve, Tolerances};
+use crate::assembled::outer::{self, OuterSolve, Tolerances};
 use crate::assembled::reduced::Reduced;
 use crate::assembled::rows::Inequalities;
-use crate::assembled::system::System;
+use crate::assembled::system::AssembledSystem;
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
 use parallel::meter::{memory, timed};
@@ -31,10 +31,10 @@ pub fn baseline(
     file: &Path,
 ) -> Result<Outcome> {
     let ((rows, mut reduced, load), assemble) = timed(session, || {
-        let layout = Layout::new(scene);
+        let layout = UnknownLayout::new(scene);
         let rows = Inequalities::new(scene, &layout);
         let unknowns = Unknowns::all(&layout);
-        let system = System::new(session, scene, &unknowns, row.format)?;
+        let system = AssembledSystem::new(session, scene, &unknowns, row.format)?;
         let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
         let load = if job.again {
             Some(SecondLoad::new(&layout).of(&unknowns, &system.b)?)
@@ -68,7 +68,7 @@ pub fn baseline(
             reduced,
             &mut solvers,
             tolerances,
-            Solve::Once,
+            OuterSolve::Once,
             None,
         )?;
         Ok((found, kappa(&krylov)?))

@@ -1,16 +1,17 @@
 //! The job of one process group of a comparison: one method on one scene, or the judgement of all solutions.
 //!
-//! A method writes its solution to a file, in the order of [`Layout`](crate::assembled::layout::Layout). The judge
-//! compares all solutions with one assembled matrix and one direct solution, so that no method measures its own error.
+//! A method writes its solution to a file, in the order of [`UnknownLayout`](crate::assembled::layout::UnknownLayout).
+//! The judge compares all solutions with one assembled matrix and one direct solution, so that no method measures its
+//! own error.
 
 use std::path::Path;
 
 use super::judge::judge;
 use super::launch::{leave, task};
-use super::table::{Baseline, Case};
-use super::task::{Job, Outcome, Task};
+use super::table::{Baseline, BaselineCase};
+use super::task::{BaselineTask, Job, Outcome};
 use super::{contact, linear, ours};
-use crate::assembled::system::Format;
+use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
 use parallel::meter::memory;
 use petsc::Session;
@@ -25,10 +26,10 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
     let memory_at_start = memory(session);
     let scene = distribution::load(session, &job.scene)?;
     let outcome = match &job.task {
-        Task::FetiFeti { threads, solution } => {
+        BaselineTask::FetiFeti { threads, solution } => {
             ours::solve(session, &scene, &job, *threads, solution)?
         }
-        Task::Baseline {
+        BaselineTask::Baseline {
             name,
             rescue,
             active,
@@ -36,19 +37,19 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         } => {
             let row = Baseline::named(name)
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
-            let case = Case {
+            let case = BaselineCase {
                 rescue: *rescue,
-                ..Case::of(&scene)
+                ..BaselineCase::of(&scene)
             };
             row.set_options(session, job.rtol, case)?;
             match row.format {
-                Format::Assembled if scene.has_contact() => {
+                MatrixFormat::Assembled if scene.has_contact() => {
                     contact::baseline(session, &scene, &job, row, solution)?
                 }
                 _ => linear::baseline(session, &scene, &job, row, active, solution)?,
             }
         }
-        Task::Judge { solutions } => {
+        BaselineTask::Judge { solutions } => {
             let verdict = judge(session, &scene, solutions)?;
             return leave(session, file, &verdict);
         }

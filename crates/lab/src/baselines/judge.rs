@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assembled::groups::{multipliers, Signs};
-use crate::assembled::layout::Layout;
-use crate::assembled::problem::Problem;
-use crate::assembled::reference::{Precision, Reference};
+use crate::assembled::groups::{multipliers, MultiplierSigns};
+use crate::assembled::layout::UnknownLayout;
+use crate::assembled::problem::AssembledProblem;
+use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::refine::over;
 use base::Result;
 use petsc::{Session, Vec as PetscVec};
@@ -20,7 +20,7 @@ const IDLE: f64 = 1e-8;
 
 /// The result of the judge.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
+pub struct CaseJudgement {
     /// The judgement of the direct solution.
     pub reference: Option<Judgement>,
     /// Number of active sets on the way to the direct solution; `None` without inequalities.
@@ -57,11 +57,11 @@ pub fn judge(
     session: &Session,
     scene: &Scene,
     solutions: &[(PathBuf, Vec<usize>)],
-) -> Result<Verdict> {
-    let layout = Layout::new(scene);
-    let reference = Reference::new(session, scene, &layout, Precision::Twice, None)?;
+) -> Result<CaseJudgement> {
+    let layout = UnknownLayout::new(scene);
+    let reference = Reference::new(session, scene, &layout, ResidualPrecision::Twice, None)?;
     let (problem, found) = (&reference.problem, &reference.found);
-    let court = Court { session, problem };
+    let court = ReferenceComparison { session, problem };
     let mut holds = vec![false; problem.rows.len()];
     let mut first = court.judge(&found.u, found.active.clone(), None, &mut holds)?;
     first.error = Some(0.0);
@@ -72,7 +72,7 @@ pub fn judge(
         l <= IDLE * lambda_max && gap <= IDLE * u_max
     };
     let counts: Vec<bool> = (0..problem.rows.len()).map(|r| !idle(r)).collect();
-    let mut verdict = Verdict {
+    let mut verdict = CaseJudgement {
         reference: found.converged.then_some(first),
         steps: scene.has_contact().then_some(found.steps),
         active: holds.iter().filter(|on| **on).count(),
@@ -98,12 +98,12 @@ pub fn judge(
 }
 
 /// The data that solutions are compared with.
-struct Court<'a> {
+struct ReferenceComparison<'a> {
     session: &'a Session,
-    problem: &'a Problem,
+    problem: &'a AssembledProblem,
 }
 
-impl Court<'_> {
+impl ReferenceComparison<'_> {
     /// Everything but the error. `holds` receives the rows that hold; `reference` contains the rows of the direct
     /// solution, and which rows count. Collective.
     fn judge(
@@ -113,7 +113,7 @@ impl Court<'_> {
         reference: Option<(&[bool], &[bool])>,
         holds: &mut Vec<bool>,
     ) -> Result<Judgement> {
-        let Problem {
+        let AssembledProblem {
             system,
             rows,
             trace,
@@ -129,7 +129,7 @@ impl Court<'_> {
         let gaps = rows.gaps(&trace.get(comm, u)?);
         let r = u.duplicate()?;
         system.residual(u, &r)?;
-        let lambda = multipliers(rows, &active, &trace.get(comm, &r)?, Signs::Any);
+        let lambda = multipliers(rows, &active, &trace.get(comm, &r)?, MultiplierSigns::Any);
         // The folds start at zero: only violated rows and pulling multipliers count.
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let least = lambda.iter().fold(0.0f64, |a, l| a.min(*l));

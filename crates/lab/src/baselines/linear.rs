@@ -8,11 +8,11 @@ use super::attempt::{solve_to, Attempt};
 use super::second::SecondLoad;
 use super::table::Baseline;
 use super::task::{ContactOutcome, Job, Outcome};
-use crate::assembled::groups::Groups;
-use crate::assembled::layout::Layout;
+use crate::assembled::groups::ActiveGroups;
+use crate::assembled::layout::UnknownLayout;
 use crate::assembled::near::NearKernel;
 use crate::assembled::rows::Inequalities;
-use crate::assembled::system::{Format, System};
+use crate::assembled::system::{AssembledSystem, MatrixFormat};
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
 use parallel::meter::{memory, timed};
@@ -45,7 +45,7 @@ fn tell(
     scene: &Scene,
     ksp: &Ksp,
     unknowns: &Unknowns,
-    system: &System,
+    system: &AssembledSystem,
 ) -> Result<()> {
     if scene.components() == 1 {
         return Ok(());
@@ -96,25 +96,25 @@ pub fn baseline(
     active: &[usize],
     file: &Path,
 ) -> Result<Outcome> {
-    let layout = Layout::new(scene);
+    let layout = UnknownLayout::new(scene);
     let unknowns = match row.format {
-        Format::Assembled => Unknowns::all(&layout),
-        Format::Unassembled if scene.has_contact() => {
+        MatrixFormat::Assembled => Unknowns::all(&layout),
+        MatrixFormat::Unassembled if scene.has_contact() => {
             let rows = Inequalities::new(scene, &layout);
             let mut on = rows.set(active);
             let in_order: Vec<usize> = (0..rows.len()).collect();
-            let groups = Groups::new(&rows, &mut on, &in_order);
+            let groups = ActiveGroups::new(&rows, &mut on, &in_order);
             Unknowns::merged(&layout, &rows, &groups)
         }
-        Format::Unassembled => Unknowns::dense(&layout),
+        MatrixFormat::Unassembled => Unknowns::dense(&layout),
     };
     let (system, assemble) = timed(session, || {
-        System::new(session, scene, &unknowns, row.format)
+        AssembledSystem::new(session, scene, &unknowns, row.format)
     })?;
     let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
     kernel.attach(&system.a)?;
     let (ksp, krylov) = solver(session, row, &system.a)?;
-    if row.format == Format::Unassembled {
+    if row.format == MatrixFormat::Unassembled {
         tell(session, scene, &ksp, &unknowns, &system)?;
     }
     let ((), setup) = timed(session, || ksp.setup())?;

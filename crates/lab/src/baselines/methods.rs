@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use serde::de::DeserializeOwned;
 
-use super::judge::{Judgement, Verdict};
+use super::judge::{CaseJudgement, Judgement};
 use super::launch::{Failure, Finished, Launcher};
-use super::plan::{Plan, Run};
-use super::task::{Job, Outcome, Task};
-use crate::assembled::layout::Layout;
-use crate::assembled::system::Format;
+use super::plan::{BaselinePlan, PlannedRun};
+use super::task::{BaselineTask, Job, Outcome};
+use crate::assembled::layout::UnknownLayout;
+use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
 use report::json::{
     CompareContact, CompareInequalities, CompareRow, ComparedScene, MethodRun, PhaseSeconds,
@@ -19,11 +19,11 @@ use scene::{Numbering, Scene};
 /// The methods of a plan on one scene.
 pub struct Methods<'a> {
     launcher: &'a Launcher,
-    plan: &'a Plan,
+    plan: &'a BaselinePlan,
     /// The scene file.
     file: PathBuf,
     /// The layout of the unknowns.
-    pub layout: Layout<'a>,
+    pub layout: UnknownLayout<'a>,
     /// Whether the scene has inequalities.
     contact: bool,
     /// Whether every method solves once more for another load.
@@ -64,7 +64,7 @@ impl<'a> Methods<'a> {
     /// The methods of `plan` on `scene`, which is in `file`.
     pub fn new(
         launcher: &'a Launcher,
-        plan: &'a Plan,
+        plan: &'a BaselinePlan,
         scene: &'a Scene,
         file: PathBuf,
     ) -> Methods<'a> {
@@ -72,7 +72,7 @@ impl<'a> Methods<'a> {
             launcher,
             plan,
             file,
-            layout: Layout::new(scene),
+            layout: UnknownLayout::new(scene),
             contact: scene.has_contact(),
             again: false,
             active: None,
@@ -97,7 +97,7 @@ impl<'a> Methods<'a> {
         }
         let equations = run
             .baseline
-            .is_some_and(|b| b.format == Format::Unassembled);
+            .is_some_and(|b| b.format == MatrixFormat::Unassembled);
         if equations && self.contact && self.active.is_none() {
             let message = "solves the equations of our active set, and there is none";
             return Ok(Ran::not(message.to_string()));
@@ -146,7 +146,7 @@ impl<'a> Methods<'a> {
     fn start<T: DeserializeOwned>(
         &self,
         name: &str,
-        task: Task,
+        task: BaselineTask,
         again: bool,
         ranks: usize,
     ) -> Result<Finished<T>> {
@@ -164,21 +164,21 @@ impl<'a> Methods<'a> {
     ///
     /// # Errors
     /// As [`Methods::run`].
-    pub fn judge(&self, solutions: Vec<Left>) -> Result<Verdict> {
+    pub fn judge(&self, solutions: Vec<Left>) -> Result<CaseJudgement> {
         if self.layout.trouble.is_some() {
-            return Ok(Verdict {
+            return Ok(CaseJudgement {
                 rows: self.layout.forms.len(),
-                ..Verdict::default()
+                ..CaseJudgement::default()
             });
         }
-        let judge = Task::Judge { solutions };
+        let judge = BaselineTask::Judge { solutions };
         let finished = self.start("judge", judge, false, self.plan.cores)?;
         Ok(finished.record.unwrap_or_else(|failure| {
             eprintln!(
                 "Warning: no direct solution, so no errors: {}",
                 failure.message
             );
-            Verdict::default()
+            CaseJudgement::default()
         }))
     }
 }
@@ -209,7 +209,7 @@ pub fn forwarded(petsc: &[String]) -> Vec<String> {
 }
 
 /// The run in a table before it has a result.
-pub fn blank(run: &Run) -> MethodRun {
+pub fn blank(run: &PlannedRun) -> MethodRun {
     MethodRun {
         method: run.name().to_string(),
         subdomains: run.parts,
@@ -220,7 +220,7 @@ pub fn blank(run: &Run) -> MethodRun {
 }
 
 /// The row of a table for a run and its result.
-pub fn row(run: &Run, ran: Ran) -> CompareRow {
+pub fn row(run: &PlannedRun, ran: Ran) -> CompareRow {
     let mut row = CompareRow {
         run: blank(run),
         ..CompareRow::default()
@@ -274,7 +274,7 @@ pub fn sentence(run: &mut MethodRun, judgement: &Judgement) {
 }
 
 /// Facts about the scene, without its direct solution.
-pub fn facts(scene: &Scene, plan: &Plan) -> ComparedScene {
+pub fn facts(scene: &Scene, plan: &BaselinePlan) -> ComparedScene {
     ComparedScene {
         scene: scene.title.clone(),
         bodies: scene.n_bodies(),
@@ -286,7 +286,7 @@ pub fn facts(scene: &Scene, plan: &Plan) -> ComparedScene {
 }
 
 /// Enters the judge's findings about the direct solution.
-pub fn judged(facts: &mut ComparedScene, scene: &Scene, verdict: &Verdict) {
+pub fn judged(facts: &mut ComparedScene, scene: &Scene, verdict: &CaseJudgement) {
     let reference = verdict.reference;
     facts.reference_residual = reference.and_then(|r| r.residual);
     facts.contact = scene.has_contact().then(|| CompareInequalities {

@@ -37,4 +37,4 @@ pub use job::run as run_job;
 pub use judge::judge;
 pub use ours::solve as solve_ours;
 pub use table::BASELINES;
-pub use task::{Job, Task};
+pub use task::{BaselineTask, Job};

@@ -5,10 +5,10 @@ use std::path::Path;
 use super::attempt::{solve_to, Attempt};
 use super::second::SecondLoad;
 use super::task::{ContactOutcome, Job, Outcome};
-use crate::assembled::layout::Layout;
-use crate::assembled::problem::Problem;
+use crate::assembled::layout::UnknownLayout;
+use crate::assembled::problem::AssembledProblem;
 use crate::assembled::rows::Inequalities;
-use crate::assembled::system::{Copies, Format};
+use crate::assembled::system::{Copies, MatrixFormat};
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
 use fetifeti::settings::MethodSettings;
@@ -35,17 +35,17 @@ pub fn solve(
     let settings = MethodSettings::default().rtol(job.rtol).recycle(0);
     let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     // The assembled matrix serves for the residual only: its time and memory do not count.
-    let layout = Layout::new(scene);
+    let layout = UnknownLayout::new(scene);
     let unknowns = Unknowns::all(&layout);
-    let mut problem: Option<Problem> = None;
+    let mut problem: Option<AssembledProblem> = None;
     let mut bytes = 0.0;
     let (attempt, rtol, message) = solve_to(job.rtol, job.rtol, |rtol| {
         solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
         let (solution, _) = timed(session, || solver.solve())?;
         if problem.is_none() {
             bytes = memory(session);
-            let format = Format::Unassembled;
-            problem = Some(Problem::new(session, scene, &unknowns, format)?);
+            let format = MatrixFormat::Unassembled;
+            problem = Some(AssembledProblem::new(session, scene, &unknowns, format)?);
         }
         let problem = problem.as_ref().expect("it was built above");
         let (local, copies) = (&solver.problem().local, Copies::ByCoefficient);
@@ -112,7 +112,12 @@ fn outcome(solution: &Solution, active: Vec<usize>) -> ContactOutcome {
 
 /// Seconds of a solve for another load with the existing set-up; the contact loop starts from its initial set.
 /// Collective.
-fn again(session: &Session, solver: &mut FetiFeti, layout: &Layout, rtol: f64) -> Result<f64> {
+fn again(
+    session: &Session,
+    solver: &mut FetiFeti,
+    layout: &UnknownLayout,
+    rtol: f64,
+) -> Result<f64> {
     let second = SecondLoad::new(layout);
     let problem = solver.problem();
     let load = |s: &Subdomain| -> Vec<f64> {
@@ -136,7 +141,7 @@ fn again(session: &Session, solver: &mut FetiFeti, layout: &Layout, rtol: f64) -
 /// faces, and returns the residual. Collective.
 fn close(
     session: &Session,
-    problem: &Problem,
+    problem: &AssembledProblem,
     mut active: Vec<bool>,
     u: &PetscVec,
     weight: &PetscVec,

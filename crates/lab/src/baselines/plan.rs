@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::table::Baseline;
-use super::task::Task;
-use crate::assembled::system::Format;
+use super::task::BaselineTask;
+use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
 use petsc::{Options, Session};
 use report::tables::summary::ranks;
@@ -19,7 +19,7 @@ const INNER: f64 = 0.1;
 const MAX_RANKS: usize = 256;
 
 /// One method in one layout.
-pub struct Run {
+pub struct PlannedRun {
     /// `None`: ours.
     pub baseline: Option<&'static Baseline>,
     /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
@@ -33,7 +33,7 @@ pub struct Run {
     pub parts: Option<usize>,
 }
 
-impl Run {
+impl PlannedRun {
     /// The method's name.
     pub fn name(&self) -> &'static str {
         self.baseline.map_or("fetifeti", |b| b.name)
@@ -45,14 +45,14 @@ impl Run {
     }
 
     /// The job; `active`: rows of the last known active set.
-    pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
+    pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> BaselineTask {
         let solution = solution.to_path_buf();
         match self.baseline {
-            None => Task::FetiFeti {
+            None => BaselineTask::FetiFeti {
                 threads: self.threads,
                 solution,
             },
-            Some(b) => Task::Baseline {
+            Some(b) => BaselineTask::Baseline {
                 name: b.name.into(),
                 rescue,
                 active: active.to_vec(),
@@ -72,7 +72,7 @@ pub enum Layouts {
 }
 
 /// The runs, and the residual they have to reach.
-pub struct Plan {
+pub struct BaselinePlan {
     /// Relative residual.
     pub rtol: f64,
     /// Reduction of the residual in a contact step while the active set changes.
@@ -84,10 +84,10 @@ pub struct Plan {
     /// Time limit of one method.
     pub limit: Duration,
     /// The methods.
-    pub runs: Vec<Run>,
+    pub runs: Vec<PlannedRun>,
 }
 
-impl Plan {
+impl BaselinePlan {
     /// The plan according to the options.
     ///
     /// # Errors
@@ -98,7 +98,7 @@ impl Plan {
         scene: &Scene,
         baselines: &[&'static Baseline],
         layouts: Layouts,
-    ) -> Result<Plan> {
+    ) -> Result<BaselinePlan> {
         if scene.is_renewed() {
             return Err(Error::input(format!(
                 "the scene \"{}\" has `update` in [steps]: its contacts follow from the load steps before, and methods \
@@ -136,7 +136,7 @@ impl Plan {
         let limit = options
             .usize("time_limit", 600, "seconds after which a method is ended")?
             .max(1);
-        Ok(Plan {
+        Ok(BaselinePlan {
             rtol,
             inner,
             cores,
@@ -154,9 +154,9 @@ fn runs(
     cores: usize,
     baselines: &[&'static Baseline],
     layouts: Layouts,
-) -> Vec<Run> {
+) -> Vec<PlannedRun> {
     let (subdomains, bodies) = (scene.n_subdomains(), scene.n_bodies());
-    let ours = |layout, ranks, threads| Run {
+    let ours = |layout, ranks, threads| PlannedRun {
         baseline: None,
         layout,
         ranks,
@@ -168,7 +168,7 @@ fn runs(
         runs.push(ours("ranks", cores.min(subdomains), 1));
     }
     for &baseline in baselines {
-        let on = |layout, ranks, parts| Run {
+        let on = |layout, ranks, parts| PlannedRun {
             baseline: Some(baseline),
             layout,
             ranks,
@@ -176,8 +176,8 @@ fn runs(
             parts,
         };
         match baseline.format {
-            Format::Assembled => runs.push(on("core", cores, None)),
-            Format::Unassembled => {
+            MatrixFormat::Assembled => runs.push(on("core", cores, None)),
+            MatrixFormat::Unassembled => {
                 runs.push(on("subdomain", subdomains, Some(subdomains)));
                 let few = cores.min(subdomains);
                 if layouts == Layouts::Three && few < bodies && bodies < subdomains {

@@ -1,7 +1,7 @@
 //! A second load for the same matrix, to measure a solve with everything set up. It is the first load times a factor
 //! that is linear in the coordinates, so that contact zones move.
 
-use crate::assembled::layout::Layout;
+use crate::assembled::layout::UnknownLayout;
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
 use petsc::Vec as PetscVec;
@@ -17,13 +17,13 @@ pub struct SecondLoad {
 
 impl SecondLoad {
     /// The factor on the scene of `layout`.
-    pub fn new(layout: &Layout) -> SecondLoad {
+    pub fn new(layout: &UnknownLayout) -> SecondLoad {
         let (centre, radius) = layout.ball();
         SecondLoad { centre, radius }
     }
 
     /// The factor at a place of w.
-    pub fn at(&self, layout: &Layout, place: u64) -> f64 {
+    pub fn at(&self, layout: &UnknownLayout, place: u64) -> f64 {
         self.value(layout.position(place / layout.components() as u64))
     }
 

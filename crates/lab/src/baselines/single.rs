@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::launch::{Launcher, Workspace};
-use super::task::{Job, Outcome, Task};
+use super::task::{BaselineTask, Job, Outcome};
 use base::Result;
 
 /// Runs the baseline `name` on `ranks` ranks with these options of PETSc, to a relative residual of `rtol` of the
@@ -33,7 +33,7 @@ pub fn baseline(
         rtol,
         inner: rtol,
         again: false,
-        task: Task::Baseline {
+        task: BaselineTask::Baseline {
             name: name.into(),
             rescue: false,
             active: active.to_vec(),

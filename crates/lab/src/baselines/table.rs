@@ -5,7 +5,7 @@
 //! `-fetifeti_`.
 
 use crate::assembled::near::Near;
-use crate::assembled::system::Format;
+use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
 use petsc::{Options, Session};
 use scene::Scene;
@@ -18,7 +18,7 @@ pub struct Baseline {
     /// A description.
     pub description: &'static str,
     /// The matrix it takes.
-    pub format: Format,
+    pub format: MatrixFormat,
     /// The prefix of the Krylov method's options behind the row's own prefix: KSPFETIDP iterates in an inner solver.
     pub krylov: &'static str,
     /// Options (without the prefix) that hold unless the user says otherwise.
@@ -63,7 +63,7 @@ impl Baseline {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn set_options(&self, session: &Session, rtol: f64, case: Case) -> Result<()> {
+    pub fn set_options(&self, session: &Session, rtol: f64, case: BaselineCase) -> Result<()> {
         let options = Options::new(session, &self.prefix());
         options.heading(&format!(
             "compare --with {}: {}",
@@ -93,7 +93,7 @@ impl Baseline {
 
 /// The properties of a run that its options depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Case {
+pub struct BaselineCase {
     /// Whether the problem is three-dimensional.
     pub space: bool,
     /// Whether it is elasticity.
@@ -104,10 +104,10 @@ pub struct Case {
     pub rescue: bool,
 }
 
-impl Case {
+impl BaselineCase {
     /// The properties of `scene`, for the first try.
-    pub fn of(scene: &Scene) -> Case {
-        Case {
+    pub fn of(scene: &Scene) -> BaselineCase {
+        BaselineCase {
             space: scene.dim() == 3,
             elastic: scene.components() > 1,
             contact: scene.has_contact(),
@@ -121,7 +121,7 @@ pub const BASELINES: [Baseline; 5] = [
     Baseline {
         name: "bddc",
         description: "CG with PCBDDC, vertices, averages over edges and faces primal",
-        format: Format::Unassembled,
+        format: MatrixFormat::Unassembled,
         krylov: "",
         options: &[
             ("ksp_type", "cg"),
@@ -149,7 +149,7 @@ pub const BASELINES: [Baseline; 5] = [
         name: "fetidp",
         description:
             "KSPFETIDP, CG on fully redundant multipliers, the primal constraints of PCBDDC",
-        format: Format::Unassembled,
+        format: MatrixFormat::Unassembled,
         krylov: "fetidp_",
         options: &[
             ("ksp_type", "fetidp"),
@@ -178,7 +178,7 @@ pub const BASELINES: [Baseline; 5] = [
     Baseline {
         name: "gamg",
         description: "CG with PETSc's smoothed aggregation",
-        format: Format::Assembled,
+        format: MatrixFormat::Assembled,
         krylov: "",
         options: &[
             ("ksp_type", "cg"),
@@ -199,7 +199,7 @@ pub const BASELINES: [Baseline; 5] = [
     Baseline {
         name: "hypre",
         description: "CG with hypre's BoomerAMG",
-        format: Format::Assembled,
+        format: MatrixFormat::Assembled,
         krylov: "",
         options: &[
             ("ksp_type", "cg"),
@@ -225,7 +225,7 @@ pub const BASELINES: [Baseline; 5] = [
     Baseline {
         name: "mumps",
         description: "sparse Cholesky by MUMPS",
-        format: Format::Assembled,
+        format: MatrixFormat::Assembled,
         krylov: "",
         options: &[
             ("ksp_type", "preonly"),

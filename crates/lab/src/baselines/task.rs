@@ -1,5 +1,5 @@
 //! The messages between the processes of a comparison. The parent writes a [`Job`], starts `mpirun -n R fetifeti
-//! baseline JOB` and reads an [`Outcome`] or a [`Verdict`](super::judge::Verdict).
+//! baseline JOB` and reads an [`Outcome`] or a [`CaseJudgement`](super::judge::CaseJudgement).
 
 use std::path::PathBuf;
 
@@ -19,12 +19,12 @@ pub struct Job {
     #[serde(default)]
     pub again: bool,
     /// The task.
-    pub task: Task,
+    pub task: BaselineTask,
 }
 
 /// The kinds of task.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum Task {
+pub enum BaselineTask {
     /// Solve by the FETI-FETI method.
     FetiFeti {
         /// Threads per rank.

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use elements::kind::CellKind;
-use mesh::{Cells, Group, Members, MeshFile};
+use mesh::{Cells, Members, MeshFile, MeshGroup};
 
 /// Names of cells and sides as the numbers of their groups; 0: in no group.
-pub(crate) struct Groups<'a> {
+pub(crate) struct GroupNumbers<'a> {
     /// All names, number 1 first.
     pub names: &'a [&'a str],
     /// The group of each cell.
@@ -20,7 +20,7 @@ pub(crate) fn build(
     points: Vec<[f64; 3]>,
     kind: CellKind,
     cells: &[Vec<u32>],
-    groups: &Groups,
+    groups: &GroupNumbers,
     side: impl Fn([f64; 3], [usize; 2]) -> usize,
 ) -> MeshFile {
     let mut file = MeshFile {
@@ -77,7 +77,7 @@ pub(crate) fn build(
     file.cell_ids = (1..=file.cells.len() as u64).collect();
     let filled = groups.names.iter().zip(&members[1..]);
     file.groups = filled
-        .map(|(name, cells)| Group {
+        .map(|(name, cells)| MeshGroup {
             name: name.to_string(),
             members: Members::Cells {
                 dim: cells

@@ -6,7 +6,7 @@ mod graded;
 mod planform;
 mod solid;
 
-pub(crate) use build::{build, Groups};
+pub(crate) use build::{build, GroupNumbers};
 pub(crate) use graded::{along, graded, graded_arc, graded_line, quadratic};
 pub(crate) use planform::{arc, circle, polyline, Planform};
 pub(crate) use solid::Solid;

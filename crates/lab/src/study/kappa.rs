@@ -17,7 +17,7 @@ use scene::Scene;
 
 /// A family of problems that differ in size.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Family {
+pub struct KappaFamily {
     /// Name in tables.
     pub name: &'static str,
     /// 2 or 3.
@@ -31,36 +31,36 @@ pub struct Family {
 }
 
 /// The families of the study.
-pub const FAMILIES: [Family; 5] = [
-    Family {
+pub const FAMILIES: [KappaFamily; 5] = [
+    KappaFamily {
         name: "scalar-2d",
         dim: 2,
         poisson: None,
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 2,
     },
-    Family {
+    KappaFamily {
         name: "elastic-2d-0.3",
         dim: 2,
         poisson: Some(0.3),
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 2,
     },
-    Family {
+    KappaFamily {
         name: "elastic-2d-0.49",
         dim: 2,
         poisson: Some(0.49),
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 1,
     },
-    Family {
+    KappaFamily {
         name: "scalar-3d",
         dim: 3,
         poisson: None,
         sizes: &[[2, 2], [4, 2], [8, 2], [5, 3], [2, 4], [2, 8], [2, 16]],
         quick: 1,
     },
-    Family {
+    KappaFamily {
         name: "elastic-3d-0.3",
         dim: 3,
         poisson: Some(0.3),
@@ -143,7 +143,7 @@ pub fn run(
 /// As [`run`].
 pub fn grid(
     session: &Session,
-    family: &Family,
+    family: &KappaFamily,
     [bodies, subdomains, elements]: [usize; 3],
     exact: bool,
 ) -> Result<KappaRow> {
@@ -189,7 +189,7 @@ pub fn grid(
 }
 
 /// The scene. Its load has no symmetry, so that CG sees the whole spectrum.
-fn text(family: &Family, [bodies, subdomains, elements]: [usize; 3]) -> String {
+fn text(family: &KappaFamily, [bodies, subdomains, elements]: [usize; 3]) -> String {
     let dim = family.dim;
     let wave = |k: usize| match dim {
         2 => format!("\"sin({}*x + {}*y + {k})\"", 7 + 4 * k, 11 - 3 * k),

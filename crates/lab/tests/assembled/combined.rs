@@ -1,7 +1,7 @@
 //! Unit tests of `crates/lab/src/assembled/layout/combined.rs`: mortar contact as bounds of single unknowns.
 
 use super::*;
-use crate::assembled::reference::{Precision, Reference};
+use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::rows::Inequalities;
 use crate::testing::with_session;
 use fetifeti::problem::RowKind;
@@ -77,7 +77,7 @@ fn scenes() -> Vec<(String, Scene)> {
 #[test]
 fn inequalities_bound_single_unknowns() {
     for (what, scene) in scenes() {
-        let layout = Layout::new(&scene);
+        let layout = UnknownLayout::new(&scene);
         assert_eq!(layout.trouble, None, "{what}");
         let rows = Inequalities::new(&scene, &layout);
         let value = |w: u64| match layout.void().binary_search(&w) {
@@ -130,7 +130,7 @@ fn inequalities_bound_single_unknowns() {
 fn the_equations_of_a_set_are_the_saddle_point_problem() {
     with_session(|session| {
         for (what, scene) in scenes() {
-            let layout = Layout::new(&scene);
+            let layout = UnknownLayout::new(&scene);
             let all = scene.rows(&|_| true);
             let inequalities: Vec<&Row> = all
                 .iter()
@@ -141,8 +141,13 @@ fn the_equations_of_a_set_are_the_saddle_point_problem() {
                 vec![true; count],
                 (0..count).map(|k| k % 3 != 1).collect::<Vec<_>>(),
             ] {
-                let solved =
-                    Reference::new(session, &scene, &layout, Precision::Working, Some(&set));
+                let solved = Reference::new(
+                    session,
+                    &scene,
+                    &layout,
+                    ResidualPrecision::Working,
+                    Some(&set),
+                );
                 let solved = solved.expect("a solution");
                 let parts: Vec<Subdomain> = (0..scene.n_subdomains())
                     .map(|s| scene.subdomain(s).expect("a subdomain"))
@@ -218,7 +223,7 @@ fn a_node_opposite_two_bodies_has_two_bounds() {
             + "[[contact]]\nbodies = [\"b\", \"top\"]\nmultipliers = \"top\"\n";
     with_session(move |session| {
         let scene = Scene::parse("two.toml", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-        let layout = Layout::new(&scene);
+        let layout = UnknownLayout::new(&scene);
         assert_eq!(layout.trouble, None);
         let rows = Inequalities::new(&scene, &layout);
         let mut places: Vec<usize> = rows.rows.iter().map(|r| r.plus).collect();

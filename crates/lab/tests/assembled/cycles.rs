@@ -4,7 +4,7 @@ use super::*;
 
 /// Rows given as (plus, minus, gap) on `n` unknowns.
 fn rows(n: u64, list: &[(usize, usize, f64)]) -> Inequalities {
-    let row = |&(plus, minus, gap): &(usize, usize, f64)| Row { plus, minus, gap };
+    let row = |&(plus, minus, gap): &(usize, usize, f64)| GapInequality { plus, minus, gap };
     Inequalities {
         unknowns: (0..n).collect(),
         rows: list.iter().map(row).collect(),
@@ -36,7 +36,7 @@ fn the_row_with_the_largest_gap_leaves() {
     let rows = rows(4, &list);
     let before = vec![1.0, 2.0, 3.0, 4.0, 5.0];
     let mut lambda = before.clone();
-    settle(&rows, &mut lambda);
+    descend_around_cycles(&rows, &mut lambda);
     let right = [0.0, 3.0, 4.0, 0.0, 9.0];
     for (found, right) in lambda.iter().zip(right) {
         assert!((found - right).abs() < 1e-14, "{lambda:?}");
@@ -56,7 +56,7 @@ fn a_cross_point_keeps_a_tree() {
     let rows = rows(4, &list);
     let before = vec![1.0, 0.5, 2.0, 0.25, 1.5, 3.0, 0.75, 1.0];
     let mut lambda = before.clone();
-    settle(&rows, &mut lambda);
+    descend_around_cycles(&rows, &mut lambda);
     let cost = |lambda: &[f64]| -> f64 { list.iter().zip(lambda).map(|(r, l)| r.2 * l).sum() };
     assert!(lambda.iter().all(|l| *l >= 0.0));
     assert!(cost(&lambda) < cost(&before));
@@ -72,11 +72,11 @@ fn a_cross_point_keeps_a_tree() {
 fn what_fits_or_has_no_minimum_stays() {
     let fits = rows(3, &[(1, 0, 1.5), (2, 0, 0.5), (1, 2, 1.0)]);
     let mut lambda = vec![1.0, 2.0, 3.0];
-    settle(&fits, &mut lambda);
+    descend_around_cycles(&fits, &mut lambda);
     assert_eq!(lambda, [1.0, 2.0, 3.0]);
     // w₀ ≤ w₁ − 1 and w₁ ≤ w₀ + 0.5 contradict each other.
     let contradict = rows(2, &[(0, 1, -1.0), (1, 0, 0.5)]);
     let mut lambda = vec![1.0, 2.0];
-    settle(&contradict, &mut lambda);
+    descend_around_cycles(&contradict, &mut lambda);
     assert_eq!(lambda, [1.0, 2.0]);
 }

@@ -12,7 +12,7 @@ fn but(kept: u64) -> impl Fn(u64) -> f64 {
 }
 
 /// The value of every unknown below `n`: dependent ones from the values `v` of the others.
-fn spread(eliminated: &Eliminated, v: &dyn Fn(u64) -> f64, n: u64) -> Vec<f64> {
+fn spread(eliminated: &EliminatedUnknowns, v: &dyn Fn(u64) -> f64, n: u64) -> Vec<f64> {
     let value = |place: u64| match eliminated.get(place) {
         None => v(place),
         Some((terms, offset)) => {
@@ -35,7 +35,7 @@ fn whatever_the_others_are_the_equations_hold() {
         (vec![(0, 1.0), (2, -1.0)], -0.5),
         (vec![(8, 1.0)], 4.0),
     ];
-    let out = Eliminated::new(equations.clone(), &free).expect("solved");
+    let out = EliminatedUnknowns::new(equations.clone(), &free).expect("solved");
     assert_eq!(out.places().count(), 6, "the sixth follows from two others");
     for slope in [0.0, 1.7, -3.1] {
         let u = spread(&out, &|p| slope * p as f64 + 0.1 * slope * slope, 9);
@@ -50,17 +50,17 @@ fn whatever_the_others_are_the_equations_hold() {
 #[test]
 fn what_is_kept_is_not_given_up() {
     let equations = vec![(vec![(0, 1.0), (1, 0.5)], 0.0)];
-    let out = Eliminated::new(equations.clone(), &but(0)).expect("solved");
+    let out = EliminatedUnknowns::new(equations.clone(), &but(0)).expect("solved");
     assert_eq!(out.places().collect::<Vec<_>>(), [1]);
-    let out = Eliminated::new(equations.clone(), &free).expect("solved");
+    let out = EliminatedUnknowns::new(equations.clone(), &free).expect("solved");
     assert_eq!(out.places().collect::<Vec<_>>(), [0]);
     let rather = |p: u64| if p == 1 { 1.0 } else { 0.1 };
-    let out = Eliminated::new(equations.clone(), &rather).expect("solved");
+    let out = EliminatedUnknowns::new(equations.clone(), &rather).expect("solved");
     assert_eq!(out.places().collect::<Vec<_>>(), [1]);
-    let kept = Eliminated::new(equations, &|_| 0.0);
+    let kept = EliminatedUnknowns::new(equations, &|_| 0.0);
     assert_eq!(kept.err(), Some(Trouble::Kept(0)));
     // A coefficient beside which the others would become huge is none to divide by.
-    let small = Eliminated::new(vec![(vec![(0, 1.0), (1, 1e-3)], 0.0)], &but(0));
+    let small = EliminatedUnknowns::new(vec![(vec![(0, 1.0), (1, 1e-3)], 0.0)], &but(0));
     assert_eq!(small.err(), Some(Trouble::Kept(0)));
 }
 
@@ -68,12 +68,12 @@ fn what_is_kept_is_not_given_up() {
 fn a_contradiction_is_one() {
     let twice = |rhs: f64| {
         let first = (vec![(3, 1.0), (7, -2.0)], 1.0);
-        Eliminated::new(vec![first, (vec![(7, 4.0), (3, -2.0)], rhs)], &free)
+        EliminatedUnknowns::new(vec![first, (vec![(7, 4.0), (3, -2.0)], rhs)], &free)
     };
     assert_eq!(twice(-2.0).map(|e| e.places().count()).ok(), Some(1));
     assert_eq!(twice(-2.1).err(), Some(Trouble::Contradicts(7)));
     // Without terms.
-    let empty = |rhs: f64| Eliminated::new(vec![(vec![(1, 0.0)], rhs)], &free);
+    let empty = |rhs: f64| EliminatedUnknowns::new(vec![(vec![(1, 0.0)], rhs)], &free);
     assert!(empty(0.0).is_ok_and(|e| e.is_empty()));
     assert_eq!(empty(1.0).err(), Some(Trouble::Contradicts(1)));
 }

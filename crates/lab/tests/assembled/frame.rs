@@ -5,12 +5,12 @@ use super::*;
 #[test]
 fn directions_are_found_again_and_the_rest_is_orthogonal() {
     let n = [0.6, 0.8, 0.0];
-    let frame = Frame::new(&[n], [true, true, false]).expect("one direction");
+    let frame = NodeFrame::new(&[n], [true, true, false]).expect("one direction");
     assert_eq!(frame.place(n.map(|v| -v)), Some((1, -1.0)));
     assert!(dot(frame.to[0], frame.to[1]).abs() < 1e-15);
     assert_eq!(frame.to[2], [0.0, 0.0, 1.0]);
     // Two walls that are not at right angles.
-    let frame = Frame::new(&[n, [1.0, 0.0, 0.0]], [true; 3]).expect("independent");
+    let frame = NodeFrame::new(&[n, [1.0, 0.0, 0.0]], [true; 3]).expect("independent");
     for r in 0..3 {
         for c in 0..3 {
             let sum: f64 = (0..3).map(|k| frame.to[r][k] * frame.from[k][c]).sum();
@@ -24,13 +24,13 @@ fn directions_are_found_again_and_the_rest_is_orthogonal() {
 #[test]
 fn axes_change_nothing_and_dependent_directions_have_no_frame() {
     let (x, y) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
-    assert!(Frame::new(&[y], [true; 3]).is_some_and(|f| f.is_identity()));
-    assert!(Frame::new(&[y, x], [true; 3]).is_some_and(|f| f.is_identity()));
+    assert!(NodeFrame::new(&[y], [true; 3]).is_some_and(|f| f.is_identity()));
+    assert!(NodeFrame::new(&[y, x], [true; 3]).is_some_and(|f| f.is_identity()));
     assert_eq!(
-        Frame::new(&[x, y, [0.6, 0.8, 0.0]], [true, true, false]),
+        NodeFrame::new(&[x, y, [0.6, 0.8, 0.0]], [true, true, false]),
         None
     );
-    assert_eq!(Frame::new(&[x, y], [true, false, false]), None);
+    assert_eq!(NodeFrame::new(&[x, y], [true, false, false]), None);
     let close = [1.0, 0.01, 0.0];
-    assert_eq!(Frame::new(&[x, close], [true; 3]), None);
+    assert_eq!(NodeFrame::new(&[x, close], [true; 3]), None);
 }

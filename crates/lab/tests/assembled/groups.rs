@@ -1,10 +1,10 @@
 //! Unit tests of `crates/lab/src/assembled/groups.rs`.
 
-use super::super::rows::Row;
+use super::super::rows::GapInequality;
 use super::*;
 
 fn rows(n: usize, list: &[(usize, usize, f64)]) -> Inequalities {
-    let row = |&(plus, minus, gap): &(usize, usize, f64)| Row { plus, minus, gap };
+    let row = |&(plus, minus, gap): &(usize, usize, f64)| GapInequality { plus, minus, gap };
     Inequalities {
         unknowns: (0..n as u64).collect(),
         rows: list.iter().map(row).collect(),
@@ -13,8 +13,8 @@ fn rows(n: usize, list: &[(usize, usize, f64)]) -> Inequalities {
     }
 }
 
-fn groups(rows: &Inequalities, active: &mut [bool]) -> Groups {
-    Groups::new(rows, active, &(0..rows.len()).collect::<Vec<_>>())
+fn groups(rows: &Inequalities, active: &mut [bool]) -> ActiveGroups {
+    ActiveGroups::new(rows, active, &(0..rows.len()).collect::<Vec<_>>())
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn rows_that_follow_hold_and_rows_that_contradict_go() {
     assert_eq!(active, [true, true, false]);
     assert_eq!(g.holds, [true, true, false]);
     let mut active = [true; 3];
-    Groups::new(&cycle(3.0), &mut active, &[2, 1, 0]);
+    ActiveGroups::new(&cycle(3.0), &mut active, &[2, 1, 0]);
     assert_eq!(active, [false, true, true]);
 }
 
@@ -64,7 +64,7 @@ fn multipliers_are_the_shortest_that_carry_the_forces() {
         ],
     );
     let force = [3.0, -1.0, 0.0, -2.0, -4.0];
-    let lambda = multipliers(&rows, &[true; 5], &force, Signs::Any);
+    let lambda = multipliers(&rows, &[true; 5], &force, MultiplierSigns::Any);
     let mut carried = [0.0; 6];
     for (row, l) in rows.rows.iter().zip(&lambda) {
         carried[row.plus] += l;
@@ -81,7 +81,7 @@ fn multipliers_are_the_shortest_that_carry_the_forces() {
         &rows,
         &[true, false, false, false, false],
         &[1.0, -0.5, 0.0, 0.0, 0.0],
-        Signs::Any,
+        MultiplierSigns::Any,
     );
     assert_eq!(open[1..], [0.0; 4]);
     assert!((open[0] - 0.75).abs() < 1e-15);
@@ -92,15 +92,18 @@ fn multipliers_around_a_ring_push_where_they_can() {
     // The forces of λ = (0, 4, 0, 0) on the ring 0-1-3-2.
     let rows = rows(4, &[(0, 1, 0.0), (0, 2, 0.0), (1, 3, 0.0), (2, 3, 0.0)]);
     let force = [4.0, 0.0, -4.0, 0.0];
-    let shortest = multipliers(&rows, &[true; 4], &force, Signs::Any);
+    let shortest = multipliers(&rows, &[true; 4], &force, MultiplierSigns::Any);
     assert!((shortest[0] - 1.0).abs() < 1e-14, "{shortest:?}");
     assert!((shortest[3] + 1.0).abs() < 1e-14, "{shortest:?}");
-    let pushing = multipliers(&rows, &[true; 4], &force, Signs::Pushing);
+    let pushing = multipliers(&rows, &[true; 4], &force, MultiplierSigns::Pushing);
     for (l, exact) in pushing.iter().zip([0.0, 4.0, 0.0, 0.0]) {
         assert!((l - exact).abs() < 1e-12, "{pushing:?}");
     }
     // No λ ≥ 0 has these forces: the shortest are given.
     let pulled = force.map(|f| -f);
-    let any = multipliers(&rows, &[true; 4], &pulled, Signs::Any);
-    assert_eq!(multipliers(&rows, &[true; 4], &pulled, Signs::Pushing), any);
+    let any = multipliers(&rows, &[true; 4], &pulled, MultiplierSigns::Any);
+    assert_eq!(
+        multipliers(&rows, &[true; 4], &pulled, MultiplierSigns::Pushing),
+        any
+    );
 }

@@ -26,7 +26,7 @@ fn subdomains(scene: &Scene) -> Vec<Subdomain> {
 fn a_pressed_column_has_the_solution_of_the_bar() {
     with_session(|session| {
         let scene = column("dirichlet = [\"bottom\"]", "load = -1");
-        let layout = Layout::new(&scene);
+        let layout = UnknownLayout::new(&scene);
         let parts = subdomains(&scene);
         let direct = Reference::certified(session, &scene, &layout).expect("a solution");
         let found = &direct.found;
@@ -65,7 +65,7 @@ fn a_pressed_column_has_the_solution_of_the_bar() {
             .distance(&parts, &more, Copies::Alike)
             .expect("a distance");
         assert!(away.iter().all(|d| (d - 0.01).abs() < 1e-14), "{away:?}");
-        let working = Reference::new(session, &scene, &layout, Precision::Working, None);
+        let working = Reference::new(session, &scene, &layout, ResidualPrecision::Working, None);
         let working = working.expect("a solution");
         assert_eq!(working.found.active, found.active);
         let values = working.values(&parts).expect("values");
@@ -81,7 +81,7 @@ fn what_nothing_holds_has_no_solution_and_springs_hold() {
     with_session(|session| {
         let ends = |upper: &str| {
             let scene = column("dirichlet = [\"bottom\"]", upper);
-            let layout = Layout::new(&scene);
+            let layout = UnknownLayout::new(&scene);
             let found = Reference::certified(session, &scene, &layout);
             found.map(|r| r.found.active.iter().filter(|on| **on).count())
         };
@@ -91,7 +91,7 @@ fn what_nothing_holds_has_no_solution_and_springs_hold() {
             let body = "[[body]]\nname = \"one\"\norigin = [0, 0]\nsize = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n";
             let scene = Scene::parse("one.toml", &format!("{body}load = \"{load}\"\n"));
             let scene = scene.expect("a scene");
-            let layout = Layout::new(&scene);
+            let layout = UnknownLayout::new(&scene);
             Reference::certified(session, &scene, &layout).map(|_| ())
         };
         assert!(alone("x").is_err_and(|e| e.is_not_converged()));
@@ -108,7 +108,7 @@ fn a_motion_without_energy_is_no_error() {
                     dirichlet = { bottom = { y = 0 } }\n[[obstacle]]\nbody = \"one\"\nside = \"bottom\"\n\
                     cylinder = { centre = [0, -5.1], radius = 5 }\n";
         let scene = Scene::parse("one.toml", text).expect("a scene");
-        let layout = Layout::new(&scene);
+        let layout = UnknownLayout::new(&scene);
         assert_eq!(layout.loose(), 0);
         let parts = subdomains(&scene);
         let direct = Reference::certified(session, &scene, &layout).expect("a solution");

@@ -10,7 +10,7 @@ fn the_factor_stays_positive_and_changes_across_the_scene() {
         "[grid]\nbodies = 2\nelements = 2\nsize = [4, 2]\norigin = [1, 1]\n",
     )
     .expect("a scene");
-    let load = SecondLoad::new(&Layout::new(&scene));
+    let load = SecondLoad::new(&UnknownLayout::new(&scene));
     let [low, mid, high] =
         [[1.0, 3.0, 0.0], [3.0, 2.0, 0.0], [5.0, 1.0, 0.0]].map(|x| load.value(x));
     assert_eq!(mid, 1.0);

@@ -9,7 +9,7 @@ use elements::kind::CellKind;
 
 /// The cells in the order of the file.
 #[derive(Default)]
-pub(super) struct Elements {
+pub(super) struct GmshElements {
     pub cells: Cells,
     pub ids: Vec<u64>,
     /// Where each stands in the file.
@@ -17,7 +17,7 @@ pub(super) struct Elements {
 }
 
 /// An element without its nodes.
-pub(super) struct Element {
+pub(super) struct ElementHead {
     pub at: usize,
     pub id: u64,
     /// Gmsh's number of its type.
@@ -36,7 +36,7 @@ impl Cell {
     }
 }
 
-impl Element {
+impl ElementHead {
     /// Reads its nodes.
     pub fn nodes(&self, scan: &mut Scan, width: Width, nodes: &Nodes) -> Result<Cell> {
         let (kind, order) = self.known(scan)?;
@@ -75,9 +75,9 @@ impl Element {
     }
 }
 
-impl Elements {
+impl GmshElements {
     /// Adds a cell; returns its place.
-    pub fn push(&mut self, scan: &Scan, element: &Element, cell: &Cell) -> Result<u32> {
+    pub fn push(&mut self, scan: &Scan, element: &ElementHead, cell: &Cell) -> Result<u32> {
         let place = u32::try_from(self.cells.len())
             .map_err(|_| scan.fail(element.at, "more than four billion elements"))?;
         self.cells.push(cell.kind, cell.nodes());

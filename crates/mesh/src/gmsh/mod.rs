@@ -20,12 +20,12 @@ mod write;
 
 use super::file::{bytes, MeshFile};
 use base::Result;
-use elements::Elements;
-use names::{Groups, Names};
+use elements::GmshElements;
+use names::{GroupNames, PhysicalGroups};
 use nodes::Nodes;
 use scan::{quoted, Encoding, Scan, Width};
 use std::path::Path;
-use version4::{Entities, Layout};
+use version4::{Entities, FormatWidths};
 pub use write::write;
 
 /// Reads the file `path`.
@@ -44,7 +44,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<MeshFile> {
 pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile> {
     let mut scan = Scan::new(name, bytes);
     let format = header(&mut scan)?;
-    let mut parts = Parts::default();
+    let mut parts = GmshSections::default();
     let mut seen: Vec<&str> = Vec::new();
     while let Some((at, section)) = scan.section()? {
         if seen.contains(&section) || section == "MeshFormat" {
@@ -61,36 +61,38 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile> {
 
 /// The sections that were read so far.
 #[derive(Default)]
-struct Parts {
-    names: Names,
+struct GmshSections {
+    names: GroupNames,
     entities: Entities,
     nodes: Option<Nodes>,
-    elements: Option<(Elements, Groups)>,
+    elements: Option<(GmshElements, PhysicalGroups)>,
 }
 
-impl Parts {
+impl GmshSections {
     /// Reads a section that begins at `at`, unless it is one that is passed over.
     fn section(
         &mut self,
         scan: &mut Scan,
-        format: Format,
+        format: GmshFormat,
         at: usize,
         section: &str,
     ) -> Result<bool> {
         match (section, format) {
-            ("PhysicalNames", Format::Two { named_by_number }) => {
-                self.names = Names::read(scan, !named_by_number)?;
+            ("PhysicalNames", GmshFormat::Two { named_by_number }) => {
+                self.names = GroupNames::read(scan, !named_by_number)?;
             }
-            ("PhysicalNames", Format::Four(_)) => self.names = Names::read(scan, true)?,
-            ("Entities" | "PartitionedEntities", Format::Four(layout)) => {
+            ("PhysicalNames", GmshFormat::Four(_)) => self.names = GroupNames::read(scan, true)?,
+            ("Entities" | "PartitionedEntities", GmshFormat::Four(layout)) => {
                 if self.elements.is_some() {
                     let message = format!("${section} was expected before $Elements");
                     return Err(scan.fail(at, message));
                 }
                 self.entities.read(scan, layout, section)?;
             }
-            ("Nodes", Format::Four(layout)) => self.nodes = Some(version4::nodes(scan, layout)?),
-            ("Nodes" | "ParametricNodes", Format::Two { .. }) => {
+            ("Nodes", GmshFormat::Four(layout)) => {
+                self.nodes = Some(version4::nodes(scan, layout)?)
+            }
+            ("Nodes" | "ParametricNodes", GmshFormat::Two { .. }) => {
                 if self.nodes.is_some() {
                     return Err(scan.fail(at, format!("${section} is here after other nodes")));
                 }
@@ -101,8 +103,8 @@ impl Parts {
                     return Err(scan.fail(at, "$Elements was expected after $Nodes"));
                 };
                 self.elements = Some(match format {
-                    Format::Two { .. } => version2::elements(scan, nodes)?,
-                    Format::Four(layout) => {
+                    GmshFormat::Two { .. } => version2::elements(scan, nodes)?,
+                    GmshFormat::Four(layout) => {
                         version4::elements(scan, layout, nodes, &self.entities)?
                     }
                 });
@@ -133,18 +135,18 @@ impl Parts {
 
 /// How the file is written.
 #[derive(Debug, Clone, Copy)]
-enum Format {
+enum GmshFormat {
     /// 2.0, 2.1 or 2.2.
     Two {
         /// Format 2.0 may name physical groups without their dimension.
         named_by_number: bool,
     },
     /// 4.0 or 4.1.
-    Four(Layout),
+    Four(FormatWidths),
 }
 
 /// Reads up to the end of $MeshFormat, which only comments may precede.
-fn header(scan: &mut Scan) -> Result<Format> {
+fn header(scan: &mut Scan) -> Result<GmshFormat> {
     loop {
         match scan.section()? {
             Some((at, "Comments")) => scan.skip(at, "Comments")?,
@@ -196,12 +198,12 @@ fn header(scan: &mut Scan) -> Result<Format> {
             ))
         }
     };
-    let four = |old, counts, ids| Format::Four(Layout { old, counts, ids });
+    let four = |old, counts, ids| GmshFormat::Four(FormatWidths { old, counts, ids });
     let format = match version {
-        b"2" | b"2.0" => Format::Two {
+        b"2" | b"2.0" => GmshFormat::Two {
             named_by_number: true,
         },
-        b"2.1" | b"2.2" => Format::Two {
+        b"2.1" | b"2.2" => GmshFormat::Two {
             named_by_number: false,
         },
         b"4" | b"4.0" => four(true, Width::Eight, Width::Four),

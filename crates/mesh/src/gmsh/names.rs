@@ -1,13 +1,13 @@
 //! Physical groups: their names and their cells.
 
 use super::scan::{quoted, Scan, Width};
-use crate::{Group, Members};
+use crate::{Members, MeshGroup};
 use base::Result;
 use std::collections::HashMap;
 
 /// The names that the file gives to physical groups.
 #[derive(Default)]
-pub(super) struct Names(Vec<Name>);
+pub(super) struct GroupNames(Vec<Name>);
 
 struct Name {
     at: usize,
@@ -17,11 +17,11 @@ struct Name {
     name: String,
 }
 
-impl Names {
+impl GroupNames {
     /// Reads the section $PhysicalNames, which is text in binary files, too.
-    pub fn read(scan: &mut Scan, with_dim: bool) -> Result<Names> {
+    pub fn read(scan: &mut Scan, with_dim: bool) -> Result<GroupNames> {
         let count = scan.count_line("the number of physical names", 4)?;
-        let mut names = Names::default();
+        let mut names = GroupNames::default();
         let mut seen = HashMap::new();
         for _ in 0..count {
             let (at, line) = scan.line();
@@ -92,12 +92,12 @@ fn bare(line: &str, with_dim: bool) -> Option<(Vec<&str>, &str)> {
 
 /// The cells of each physical group, by dimension and number.
 #[derive(Default)]
-pub(super) struct Groups {
+pub(super) struct PhysicalGroups {
     places: HashMap<(usize, u64), usize>,
     list: Vec<((usize, u64), Vec<u32>)>,
 }
 
-impl Groups {
+impl PhysicalGroups {
     /// Adds cells behind those that the group has.
     pub fn add(&mut self, dim: usize, tag: u64, cells: std::ops::Range<u32>) {
         self.of(dim, tag).extend(cells);
@@ -114,8 +114,8 @@ impl Groups {
 
     /// The groups under their names: first those that have one, in the order of the names, also where they are empty;
     /// then the others. Groups of one dimension and one name are one group.
-    pub fn name(mut self, scan: &Scan, names: &Names) -> Result<Vec<Group>> {
-        let mut groups: Vec<Group> = Vec::new();
+    pub fn name(mut self, scan: &Scan, names: &GroupNames) -> Result<Vec<MeshGroup>> {
+        let mut groups: Vec<MeshGroup> = Vec::new();
         let mut named: HashMap<(usize, String), usize> = HashMap::new();
         for name in names.0.iter().filter(|n| !n.name.is_empty()) {
             let dims = name.dim.map_or(0..4, |d| d..d + 1);
@@ -154,13 +154,13 @@ impl Groups {
     }
 }
 
-fn group(name: String, dim: usize, cells: Vec<u32>) -> Group {
+fn group(name: String, dim: usize, cells: Vec<u32>) -> MeshGroup {
     let members = Members::Cells { dim, cells };
-    Group { name, members }
+    MeshGroup { name, members }
 }
 
 /// Adds cells to a group, which stays in increasing order.
-fn join(group: &mut Group, more: Vec<u32>) {
+fn join(group: &mut MeshGroup, more: Vec<u32>) {
     if let Members::Cells { cells, .. } = &mut group.members {
         cells.extend(more);
         cells.sort_unstable();

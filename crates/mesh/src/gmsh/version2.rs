@@ -1,7 +1,7 @@
 //! Formats 2.0 to 2.2: each node and each element tells all about itself.
 
-use super::elements::{Cell, Element, Elements};
-use super::names::Groups;
+use super::elements::{Cell, ElementHead, GmshElements};
+use super::names::PhysicalGroups;
 use super::nodes::Nodes;
 use super::scan::{Scan, Width};
 use crate::gmsh::names;
@@ -39,7 +39,7 @@ pub(super) fn nodes(scan: &mut Scan, parametric: bool) -> Result<Nodes> {
 }
 
 /// Reads the section $Elements.
-pub(super) fn elements(scan: &mut Scan, nodes: &Nodes) -> Result<(Elements, Groups)> {
+pub(super) fn elements(scan: &mut Scan, nodes: &Nodes) -> Result<(GmshElements, PhysicalGroups)> {
     let count = scan.count_line("the number of elements", 8)?;
     let mut all = Collected::default();
     let mut seen = 0;
@@ -49,7 +49,7 @@ pub(super) fn elements(scan: &mut Scan, nodes: &Nodes) -> Result<(Elements, Grou
             let id = scan.number(INT, "the number of an element")?;
             let kind = scan.whole(INT, "the type of an element")?;
             let tags = scan.count(INT, "the number of tags", 2)?;
-            all.element(scan, nodes, Element { at, id, kind }, tags)?;
+            all.element(scan, nodes, ElementHead { at, id, kind }, tags)?;
             seen += 1;
             continue;
         }
@@ -65,7 +65,7 @@ pub(super) fn elements(scan: &mut Scan, nodes: &Nodes) -> Result<(Elements, Grou
         for _ in 0..block {
             let at = scan.at();
             let id = scan.number(INT, "the number of an element")?;
-            all.element(scan, nodes, Element { at, id, kind }, tags)?;
+            all.element(scan, nodes, ElementHead { at, id, kind }, tags)?;
         }
         seen += block;
     }
@@ -76,8 +76,8 @@ pub(super) fn elements(scan: &mut Scan, nodes: &Nodes) -> Result<(Elements, Grou
 
 #[derive(Default)]
 struct Collected {
-    elements: Elements,
-    groups: Groups,
+    elements: GmshElements,
+    groups: PhysicalGroups,
     /// The entity of the last cell, and the physical groups that it is in.
     last: (i64, BTreeSet<u64>),
 }
@@ -88,7 +88,7 @@ impl Collected {
         &mut self,
         scan: &mut Scan,
         nodes: &Nodes,
-        element: Element,
+        element: ElementHead,
         tags: usize,
     ) -> Result<()> {
         let mut group = None;

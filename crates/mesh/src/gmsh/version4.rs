@@ -1,8 +1,8 @@
 //! Formats 4.0 and 4.1: nodes and elements stand in blocks, one for each entity of the model, and entities are in
 //! physical groups.
 
-use super::elements::{Element, Elements};
-use super::names::Groups;
+use super::elements::{ElementHead, GmshElements};
+use super::names::PhysicalGroups;
 use super::nodes::Nodes;
 use super::scan::{Scan, Width};
 use crate::gmsh::names;
@@ -13,7 +13,7 @@ const INT: Width = Width::Four;
 
 /// The differences between the formats 4.0 and 4.1.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Layout {
+pub(super) struct FormatWidths {
     /// 4.0: the number of an entity comes before its dimension, and that of a node before its point.
     pub old: bool,
     /// The width of counts.
@@ -28,7 +28,7 @@ pub(super) struct Entities(HashMap<(i64, i64), Vec<u64>>);
 
 impl Entities {
     /// Reads the section $Entities or $PartitionedEntities.
-    pub fn read(&mut self, scan: &mut Scan, layout: Layout, section: &str) -> Result<()> {
+    pub fn read(&mut self, scan: &mut Scan, layout: FormatWidths, section: &str) -> Result<()> {
         let partitioned = section == "PartitionedEntities";
         if partitioned {
             scan.whole(layout.counts, "the number of partitions")?;
@@ -52,7 +52,7 @@ impl Entities {
     fn entity(
         &mut self,
         scan: &mut Scan,
-        layout: Layout,
+        layout: FormatWidths,
         partitioned: bool,
         dim: i64,
     ) -> Result<()> {
@@ -112,7 +112,7 @@ fn least(scan: &Scan) -> usize {
 }
 
 /// Passes over a count and as many numbers.
-fn list(scan: &mut Scan, layout: Layout, what: &str) -> Result<()> {
+fn list(scan: &mut Scan, layout: FormatWidths, what: &str) -> Result<()> {
     let count = scan.count(layout.counts, what, least(scan))?;
     for _ in 0..count {
         scan.whole(INT, "the number of an entity")?;
@@ -127,7 +127,7 @@ struct Head {
     at: usize,
 }
 
-fn head(scan: &mut Scan, layout: Layout, what: &str) -> Result<Head> {
+fn head(scan: &mut Scan, layout: FormatWidths, what: &str) -> Result<Head> {
     let blocks = scan.count(layout.counts, "the number of blocks", 8)?;
     let at = scan.at();
     let count = scan.count(layout.counts, what, 4)?;
@@ -152,7 +152,7 @@ impl Head {
 }
 
 /// The head of a block: the entity, whether nodes are parametric or the type of elements, and their number.
-struct Block {
+struct BlockHeader {
     at: usize,
     dim: i64,
     entity: i64,
@@ -160,7 +160,13 @@ struct Block {
     count: usize,
 }
 
-fn block(scan: &mut Scan, layout: Layout, kind: &str, what: &str, least: usize) -> Result<Block> {
+fn block(
+    scan: &mut Scan,
+    layout: FormatWidths,
+    kind: &str,
+    what: &str,
+    least: usize,
+) -> Result<BlockHeader> {
     let at = scan.at();
     let first = scan.whole(INT, "an entity")?;
     let second = scan.whole(INT, "an entity")?;
@@ -173,7 +179,7 @@ fn block(scan: &mut Scan, layout: Layout, kind: &str, what: &str, least: usize) 
         let message = format!("found {dim} where the dimension of an entity was expected, 0 to 3");
         return Err(scan.fail(at, message));
     }
-    Ok(Block {
+    Ok(BlockHeader {
         at,
         dim,
         entity,
@@ -183,7 +189,7 @@ fn block(scan: &mut Scan, layout: Layout, kind: &str, what: &str, least: usize) 
 }
 
 /// Reads the section $Nodes.
-pub(super) fn nodes(scan: &mut Scan, layout: Layout) -> Result<Nodes> {
+pub(super) fn nodes(scan: &mut Scan, layout: FormatWidths) -> Result<Nodes> {
     let head = head(scan, layout, "the number of nodes")?;
     let least = if scan.is_text() { 7 } else { 28 };
     let mut nodes = Nodes::default();
@@ -232,13 +238,13 @@ pub(super) fn nodes(scan: &mut Scan, layout: Layout) -> Result<Nodes> {
 /// Reads the section $Elements.
 pub(super) fn elements(
     scan: &mut Scan,
-    layout: Layout,
+    layout: FormatWidths,
     nodes: &Nodes,
     entities: &Entities,
-) -> Result<(Elements, Groups)> {
+) -> Result<(GmshElements, PhysicalGroups)> {
     let head = head(scan, layout, "the number of elements")?;
-    let mut elements = Elements::default();
-    let mut groups = Groups::default();
+    let mut elements = GmshElements::default();
+    let mut groups = PhysicalGroups::default();
     // Few bytes can put all elements into many groups.
     let mut most = scan.length();
     for _ in 0..head.blocks {
@@ -255,7 +261,7 @@ pub(super) fn elements(
             let at = scan.at();
             let id = scan.number(layout.ids, "the number of an element")?;
             let kind = block.kind;
-            let element = Element { at, id, kind };
+            let element = ElementHead { at, id, kind };
             let cell = element.nodes(scan, layout.ids, nodes)?;
             if cell.kind.dim() as i64 != block.dim {
                 let (name, dim) = (cell.kind.name(), block.dim);

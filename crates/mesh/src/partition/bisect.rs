@@ -54,17 +54,17 @@ fn bisect(graph: &Graph, wanted: i64, dice: &mut Dice) -> Vec<bool> {
     let mut cut = first_cut(at(levels.len()), wanted, dice);
     for k in (0..levels.len()).rev() {
         let upper = levels[k].1.iter().map(|&v| cut.upper[v as usize]).collect();
-        cut = Cut::new(at(k), upper, wanted);
+        cut = Bisection::new(at(k), upper, wanted);
         cut.improve();
     }
     cut.upper
 }
 
 /// The best of some cuts of a small graph: sides that grow around a random vertex.
-fn first_cut<'a>(graph: &'a Graph, wanted: i64, dice: &mut Dice) -> Cut<'a> {
-    let mut best: Option<((i64, i64), Cut)> = None;
+fn first_cut<'a>(graph: &'a Graph, wanted: i64, dice: &mut Dice) -> Bisection<'a> {
+    let mut best: Option<((i64, i64), Bisection)> = None;
     for _ in 0..TRIES {
-        let mut cut = Cut::new(graph, grown(graph, wanted, dice), wanted);
+        let mut cut = Bisection::new(graph, grown(graph, wanted, dice), wanted);
         cut.improve();
         let score = (cut.excess(), cut.length);
         if best.as_ref().is_none_or(|b| score < b.0) {
@@ -110,7 +110,7 @@ fn grown(graph: &Graph, wanted: i64, dice: &mut Dice) -> Vec<bool> {
 }
 
 /// A cut in two and what it costs.
-struct Cut<'a> {
+struct Bisection<'a> {
     graph: &'a Graph,
     upper: Vec<bool>,
     /// Weight below and above.
@@ -124,8 +124,8 @@ struct Cut<'a> {
     gain: Vec<i64>,
 }
 
-impl<'a> Cut<'a> {
-    fn new(graph: &'a Graph, upper: Vec<bool>, wanted: i64) -> Cut<'a> {
+impl<'a> Bisection<'a> {
+    fn new(graph: &'a Graph, upper: Vec<bool>, wanted: i64) -> Bisection<'a> {
         let mut sizes = [0; 2];
         let mut gain = vec![0; graph.n()];
         let mut length = 0;
@@ -143,7 +143,7 @@ impl<'a> Cut<'a> {
         let heaviest = graph.size.iter().copied().max().unwrap_or(0);
         let play = (graph.total() / 200).max(heaviest / 2 + 1);
         let (least, most) = (wanted - play, wanted + play);
-        Cut {
+        Bisection {
             graph,
             upper,
             sizes,

@@ -13,7 +13,7 @@ use base::linalg::union_find::UnionFind;
 
 /// The kind of class that a shared node belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ClassKind {
     /// Always a vertex: the plane.
     Vertex,
     /// Hangs together by edges of cells.
@@ -29,7 +29,7 @@ pub(super) struct Classes<'a> {
     sharing: &'a Sharing,
     /// The class of every node: same subdomains, and alike on the surface or not.
     class: Vec<u32>,
-    kinds: Vec<Kind>,
+    kinds: Vec<ClassKind>,
     /// Whether a node lies on the surface of the body.
     surface: Vec<bool>,
     /// Sides between subdomains, as cell and side of the cell in the lower part.
@@ -71,11 +71,11 @@ impl<'a> Classes<'a> {
             let (parts, i) = (sharing.of(node), node as usize);
             let edge_like = parts.len() > 2 || !faced[i] || (surface[i] && (rims || plane));
             let kind = match (edge_like, plane) {
-                (true, true) => Kind::Vertex,
-                (true, false) => Kind::Edge,
-                (false, _) => Kind::Face,
+                (true, true) => ClassKind::Vertex,
+                (true, false) => ClassKind::Edge,
+                (false, _) => ClassKind::Face,
             };
-            let key = (parts, surface[i] && rims, kind == Kind::Face);
+            let key = (parts, surface[i] && rims, kind == ClassKind::Face);
             class[i] = *known.entry(key).or_insert_with(|| {
                 kinds.push(kind);
                 kinds.len() as u32 - 1
@@ -97,7 +97,7 @@ impl<'a> Classes<'a> {
     }
 
     /// The kind of class that a node belongs to; `None` for a node of one subdomain.
-    pub fn kind(&self, node: u32) -> Option<Kind> {
+    pub fn kind(&self, node: u32) -> Option<ClassKind> {
         let class = self.class[node as usize];
         (class != NONE).then(|| self.kinds[class as usize])
     }
@@ -124,7 +124,7 @@ impl<'a> Classes<'a> {
     }
 
     /// The nodes of each edge or face, without those in `left_out`. Each list is increasing.
-    pub fn entities(&self, cells: &Cells, left_out: &[bool]) -> Vec<(Kind, Vec<u32>)> {
+    pub fn entities(&self, cells: &Cells, left_out: &[bool]) -> Vec<(ClassKind, Vec<u32>)> {
         let mut joined = UnionFind::new(self.class.len());
         let stays = |node: &u32| !left_out[*node as usize];
         for &(a, b) in self.pairs.iter().filter(|(a, b)| self.same(*a, *b)) {
@@ -134,15 +134,15 @@ impl<'a> Classes<'a> {
         }
         for &(c, side) in &self.sides {
             let nodes = cells.side_nodes(c as usize, usize::from(side));
-            let mut nodes = nodes.filter(|n| stays(n) && self.kind(*n) == Some(Kind::Face));
+            let mut nodes = nodes.filter(|n| stays(n) && self.kind(*n) == Some(ClassKind::Face));
             let first = nodes.next();
             // Two subdomains meet at a side: nodes of faces on it have these two.
             nodes.for_each(|n| joined.join(first.unwrap_or(n) as usize, n as usize));
         }
         let mut place = vec![NONE; self.class.len()];
-        let mut entities: Vec<(Kind, Vec<u32>)> = Vec::new();
+        let mut entities: Vec<(ClassKind, Vec<u32>)> = Vec::new();
         for node in self.sharing.shared().filter(stays) {
-            let Some(kind) = self.kind(node).filter(|k| *k != Kind::Vertex) else {
+            let Some(kind) = self.kind(node).filter(|k| *k != ClassKind::Vertex) else {
                 continue;
             };
             let set = joined.find(node as usize);
@@ -156,7 +156,7 @@ impl<'a> Classes<'a> {
     }
 
     fn edge_pairs(&self, cells: &Cells, adjacency: &Adjacency, rims: bool) -> Vec<(u32, u32)> {
-        let of_edge = |node: u32| self.kind(node) == Some(Kind::Edge);
+        let of_edge = |node: u32| self.kind(node) == Some(ClassKind::Edge);
         let outside = |node: u32| rims && self.surface[node as usize];
         let mut pairs = Vec::new();
         let mut take = |nodes: &[u32], corners: usize, edges: &[[u8; 2]], on_surface: bool| {
@@ -198,14 +198,14 @@ impl<'a> Classes<'a> {
 }
 
 /// A side of a cell in the lower of two parts, and the two.
-type Shared = ((u32, u8), (u32, u32));
+type SharedSide = ((u32, u8), (u32, u32));
 
 /// The sides between two parts.
 fn between<'a>(
     cells: &'a Cells,
     adjacency: &'a Adjacency,
     part: &'a [u32],
-) -> impl Iterator<Item = Shared> + 'a {
+) -> impl Iterator<Item = SharedSide> + 'a {
     let all = (0..cells.len()).flat_map(|c| (0..cells.kind(c).sides().len()).map(move |s| (c, s)));
     all.filter_map(|(c, side)| {
         let pair = (part[c], part[adjacency.across(c, side)? as usize]);

@@ -1,7 +1,7 @@
 //! Vertices, edges and faces of the subdomains of a body.
 
 use super::adjacency::Adjacency;
-use super::classes::{Classes, Kind};
+use super::classes::{ClassKind, Classes};
 use super::sharing::Sharing;
 use super::vertices;
 use crate::cells::Cells;
@@ -50,7 +50,7 @@ impl Interface {
         let space = cells.kinds().first().is_some_and(|k| k.dim() == 3);
         for (kind, nodes) in classes.entities(cells, &vertex) {
             match kind {
-                Kind::Face if space => found.faces.push(nodes),
+                ClassKind::Face if space => found.faces.push(nodes),
                 _ => found.edges.push(nodes),
             }
         }

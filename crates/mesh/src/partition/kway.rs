@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use super::bisect::divide;
 use super::graph::{Dice, Graph};
-use super::pairs::{improve, Parts};
+use super::pairs::{improve, GraphPartition};
 
 /// Vertices for each part on the coarsest level.
 const COARSEST: usize = 24;
@@ -30,7 +30,7 @@ pub(super) fn parts(graph: &Graph, n: usize, dice: &mut Dice) -> Vec<u32> {
     let at = |k: usize| if k == 0 { graph } else { &levels[k - 1].0 };
     let mut part = divide(at(levels.len()), n, 0, dice);
     for k in (0..=levels.len()).rev() {
-        Refinement::new(at(k), &mut part, n).run();
+        KwayRefinement::new(at(k), &mut part, n).run();
         if k > 0 {
             part = levels[k - 1].1.iter().map(|&v| part[v as usize]).collect();
         }
@@ -38,7 +38,7 @@ pub(super) fn parts(graph: &Graph, n: usize, dice: &mut Dice) -> Vec<u32> {
     part
 }
 
-struct Refinement<'a> {
+struct KwayRefinement<'a> {
     graph: &'a Graph,
     part: &'a mut [u32],
     sizes: Vec<i64>,
@@ -53,8 +53,8 @@ struct Refinement<'a> {
 /// A move that is worth trying: how much shorter it makes the cut, the vertex, and the state that it was found in.
 type Try = (i64, u32, u32);
 
-impl<'a> Refinement<'a> {
-    fn new(graph: &'a Graph, part: &'a mut [u32], n: usize) -> Refinement<'a> {
+impl<'a> KwayRefinement<'a> {
+    fn new(graph: &'a Graph, part: &'a mut [u32], n: usize) -> KwayRefinement<'a> {
         let mut sizes = vec![0; n];
         let mut counts = vec![0; n];
         for (&p, &s) in part.iter().zip(&graph.size) {
@@ -66,7 +66,7 @@ impl<'a> Refinement<'a> {
         let mean = total / n as i64;
         let limit = (mean + mean * PLAY / 1000).max(mean + heaviest / 2) + 1;
         let least = mean - mean * SHRINK / 1000;
-        Refinement {
+        KwayRefinement {
             graph,
             part,
             sizes,
@@ -84,7 +84,7 @@ impl<'a> Refinement<'a> {
                 break;
             }
         }
-        improve(&mut Parts {
+        improve(&mut GraphPartition {
             graph: self.graph,
             part: self.part,
             sizes: &mut self.sizes,

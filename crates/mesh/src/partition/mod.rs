@@ -27,7 +27,7 @@ pub use sharing::Sharing;
 pub use size::subdomains_for;
 
 use self::graph::{Dice, Graph};
-use self::shape::Shape;
+use self::shape::PartitionRefiner;
 use super::cells::Cells;
 
 /// The subdomains of a mesh.
@@ -84,7 +84,7 @@ impl Partition {
             first += n as u32;
         }
         let n = first as usize;
-        let mut shape = Shape::new(adjacency, &work, part, n);
+        let mut shape = PartitionRefiner::new(adjacency, &work, part, n);
         if n > members.len() {
             shape.fill();
             shape.connect();

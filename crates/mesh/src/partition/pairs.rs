@@ -16,7 +16,7 @@ const PATIENCE: usize = 25;
 const PATIENCE_OF_RIM: usize = 8;
 
 /// The parts of a graph and their sizes.
-pub(super) struct Parts<'a> {
+pub(super) struct GraphPartition<'a> {
     pub graph: &'a Graph,
     pub part: &'a mut [u32],
     pub sizes: &'a mut [i64],
@@ -28,15 +28,15 @@ pub(super) struct Parts<'a> {
 
 /// The state of a vertex in a search; valid if `search` is that of the present search.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct VisitedVertex {
     search: u32,
     gain: i64,
     moved: bool,
 }
 
 /// Improves all pairs of neighbours.
-pub(super) fn improve(parts: &mut Parts) {
-    let mut seen = vec![Seen::default(); parts.graph.n()];
+pub(super) fn improve(parts: &mut GraphPartition) {
+    let mut seen = vec![VisitedVertex::default(); parts.graph.n()];
     let mut changed = vec![true; parts.sizes.len()];
     let mut search = 0;
     for _ in 0..ROUNDS {
@@ -53,7 +53,7 @@ pub(super) fn improve(parts: &mut Parts) {
 }
 
 /// The vertices with neighbours in another part, for every pair of parts of which one changed.
-fn rims(parts: &Parts, changed: &[bool]) -> Vec<(u32, u32, u32)> {
+fn rims(parts: &GraphPartition, changed: &[bool]) -> Vec<(u32, u32, u32)> {
     let mut rims = Vec::new();
     for v in 0..parts.graph.n() {
         let own = parts.part[v];
@@ -74,10 +74,10 @@ fn rims(parts: &Parts, changed: &[bool]) -> Vec<(u32, u32, u32)> {
 
 /// Improves the cut between two parts. Tells whether it changed.
 fn between(
-    parts: &mut Parts,
+    parts: &mut GraphPartition,
     pair: [u32; 2],
     rim: impl Iterator<Item = u32>,
-    seen: &mut [Seen],
+    seen: &mut [VisitedVertex],
     search: u32,
 ) -> bool {
     let side_of = |part: &[u32], v: usize| pair.iter().position(|&p| p == part[v]);
@@ -87,7 +87,7 @@ fn between(
         on_rim += 1;
         if let Some(side) = side_of(parts.part, v as usize) {
             let gain = gain(parts, v as usize, pair[1 - side]);
-            seen[v as usize] = Seen {
+            seen[v as usize] = VisitedVertex {
                 search,
                 gain,
                 moved: false,
@@ -97,7 +97,7 @@ fn between(
     }
     let patience = PATIENCE.max(on_rim / PATIENCE_OF_RIM);
     let mut length = 0;
-    let state = |parts: &Parts, length: i64| {
+    let state = |parts: &GraphPartition, length: i64| {
         let [a, b] = pair.map(|p| parts.sizes[p as usize]);
         (
             (a - parts.limit).max(0) + (b - parts.limit).max(0),
@@ -143,7 +143,7 @@ fn between(
             let known = &mut seen[w];
             if known.search != search {
                 let gain = gain(parts, w, pair[1 - its]);
-                *known = Seen {
+                *known = VisitedVertex {
                     search,
                     gain,
                     moved: false,
@@ -172,7 +172,7 @@ fn between(
 }
 
 /// By how much the cut becomes shorter if a vertex moves to a part.
-fn gain(parts: &Parts, v: usize, to: u32) -> i64 {
+fn gain(parts: &GraphPartition, v: usize, to: u32) -> i64 {
     let own = parts.part[v];
     let worth = |(w, bond): (usize, i64)| match parts.part[w] {
         p if p == to => bond,
@@ -182,7 +182,7 @@ fn gain(parts: &Parts, v: usize, to: u32) -> i64 {
     parts.graph.bonds(v).map(worth).sum()
 }
 
-fn shift(parts: &mut Parts, v: usize, to: u32) {
+fn shift(parts: &mut GraphPartition, v: usize, to: u32) {
     let from = std::mem::replace(&mut parts.part[v], to) as usize;
     let (to, size) = (to as usize, parts.graph.size[v]);
     parts.sizes[from] -= size;

@@ -27,7 +27,7 @@ const SMOOTH: i64 = 75;
 const SMALL: i64 = 600;
 const LEFT: i64 = 800;
 
-pub(super) struct Shape<'a> {
+pub(super) struct PartitionRefiner<'a> {
     adjacency: &'a Adjacency,
     /// Work of each cell.
     work: &'a [i64],
@@ -41,8 +41,13 @@ pub(super) struct Shape<'a> {
     search: u32,
 }
 
-impl<'a> Shape<'a> {
-    pub fn new(adjacency: &'a Adjacency, work: &'a [i64], part: Vec<u32>, n: usize) -> Shape<'a> {
+impl<'a> PartitionRefiner<'a> {
+    pub fn new(
+        adjacency: &'a Adjacency,
+        work: &'a [i64],
+        part: Vec<u32>,
+        n: usize,
+    ) -> PartitionRefiner<'a> {
         let mut sizes = vec![0; n];
         let mut counts = vec![0; n];
         for (&p, &w) in part.iter().zip(work) {
@@ -52,7 +57,7 @@ impl<'a> Shape<'a> {
         let mean = (work.iter().sum::<i64>() / n.max(1) as i64).max(1);
         let heaviest = work.iter().copied().max().unwrap_or(0);
         let met = vec![0; part.len()];
-        Shape {
+        PartitionRefiner {
             adjacency,
             work,
             part,

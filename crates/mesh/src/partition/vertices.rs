@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::classes::{Classes, Kind};
+use super::classes::{ClassKind, Classes};
 use super::sharing::Sharing;
 use crate::cells::Cells;
 use base::linalg::lists::Lists;
@@ -29,11 +29,11 @@ pub(super) fn choose(
     let corner = corners(cells, sharing.n_nodes());
     let mut vertex = vec![false; sharing.n_nodes()];
     for node in sharing.shared() {
-        vertex[node as usize] = classes.kind(node) == Some(Kind::Vertex);
+        vertex[node as usize] = classes.kind(node) == Some(ClassKind::Vertex);
     }
     ends(cells, around, sharing, classes, &corner, &mut vertex);
     let space = cells.kinds().first().is_some_and(|k| k.dim() == 3);
-    hold(points, sharing, classes, &corner, space, &mut vertex);
+    fix_motions(points, sharing, classes, &corner, space, &mut vertex);
     vertex
 }
 
@@ -81,7 +81,7 @@ fn ends(
             .map(|g| g.1)
     };
     for (kind, nodes) in classes.entities(cells, &vec![false; sharing.n_nodes()]) {
-        if kind != Kind::Edge {
+        if kind != ClassKind::Edge {
             continue;
         }
         let mut goals: Vec<u32> = nodes.iter().flat_map(|&node| goals_of(node)).collect();
@@ -129,7 +129,7 @@ fn groups(cells: &Cells, around: &Lists, nodes: &[u32]) -> Vec<Vec<u32>> {
 }
 
 /// Adds vertices until each two subdomains with common sides hold each other.
-fn hold(
+fn fix_motions(
     points: &[[f64; 3]],
     sharing: &Sharing,
     classes: &Classes,

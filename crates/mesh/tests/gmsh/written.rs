@@ -11,7 +11,7 @@ fn meshes_of_gmsh_are_the_same_after_writing() {
         let Ok(mesh) = load(&file) else {
             continue;
         };
-        let of_cells = |g: &crate::Group| matches!(g.members, Members::Cells { .. });
+        let of_cells = |g: &crate::MeshGroup| matches!(g.members, Members::Cells { .. });
         assert!(mesh.groups.iter().all(of_cells), "{}", name(&file));
         // The format has one group for a cell.
         let mut grouped = vec![0; mesh.cells.len()];

@@ -5,7 +5,7 @@ use super::super::meshes::{
 };
 use super::super::Partition;
 use super::*;
-use crate::Parts;
+use crate::MeshPartition;
 
 struct Cut {
     part: Vec<u32>,
@@ -78,7 +78,7 @@ fn check(mesh: &Mesh, cut: &Cut) {
             having[n as usize].insert(cut.part[c]);
         });
     }
-    let parts = Parts::new(cut.part.clone(), cut.sharing.clone(), i.clone());
+    let parts = MeshPartition::new(cut.part.clone(), cut.sharing.clone(), i.clone());
     for (n, (having, times)) in having.iter().zip(times).enumerate() {
         assert!(having.iter().eq(cut.sharing.of(n as u32)));
         assert!(having.iter().eq(parts.sharers(n)));

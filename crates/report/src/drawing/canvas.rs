@@ -7,7 +7,7 @@ use ab_glyph::{Font, FontRef, GlyphId};
 use std::sync::OnceLock;
 
 /// A position in logical pixels, y downwards.
-pub type Point = (f64, f64);
+pub type CanvasPoint = (f64, f64);
 
 /// An opaque colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,11 +94,11 @@ impl TextStyle {
 /// A surface to draw on.
 pub trait Canvas {
     /// Fills a polygon.
-    fn polygon(&mut self, points: &[Point], fill: Colour);
+    fn polygon(&mut self, points: &[CanvasPoint], fill: Colour);
     /// Draws a polyline of a width; `dash` holds lengths of strokes and gaps in turn, and is empty for a full line.
-    fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]);
+    fn line(&mut self, points: &[CanvasPoint], width: f64, colour: Colour, dash: &[f64]);
     /// Draws a text with its anchor at a point.
-    fn text(&mut self, at: Point, text: &str, style: &TextStyle);
+    fn text(&mut self, at: CanvasPoint, text: &str, style: &TextStyle);
 }
 
 /// The font, regular or bold.
@@ -124,18 +124,18 @@ pub(super) fn em(bold: bool) -> f64 {
 }
 
 /// A piece of a text in one size: its characters, its size and how far its baseline is raised.
-pub(super) struct Run {
+pub(super) struct TextRun {
     pub text: String,
     pub size: f64,
     pub raise: f64,
 }
 
 /// Splits a text at its sub- and superscripts.
-pub(super) fn runs(text: &str, size: f64) -> Vec<Run> {
-    let mut out: Vec<Run> = Vec::new();
+pub(super) fn runs(text: &str, size: f64) -> Vec<TextRun> {
+    let mut out: Vec<TextRun> = Vec::new();
     let mut push = |text: &str, size: f64, raise: f64| {
         if !text.is_empty() {
-            out.push(Run {
+            out.push(TextRun {
                 text: text.to_string(),
                 size,
                 raise,
@@ -161,7 +161,7 @@ pub(super) fn runs(text: &str, size: f64) -> Vec<Run> {
 }
 
 /// The glyphs of a run with their places behind its start, and its width, in logical pixels.
-pub(super) fn glyphs(run: &Run, bold: bool) -> (Vec<(GlyphId, f64)>, f64) {
+pub(super) fn glyphs(run: &TextRun, bold: bool) -> (Vec<(GlyphId, f64)>, f64) {
     let (font, unit) = (font(bold), run.size / em(bold));
     let mut out: Vec<(GlyphId, f64)> = Vec::new();
     let mut x = 0.0;
@@ -177,7 +177,7 @@ pub(super) fn glyphs(run: &Run, bold: bool) -> (Vec<(GlyphId, f64)>, f64) {
 }
 
 /// Width of a run in logical pixels.
-pub(super) fn run_width(run: &Run, bold: bool) -> f64 {
+pub(super) fn run_width(run: &TextRun, bold: bool) -> f64 {
     glyphs(run, bold).1
 }
 
@@ -206,7 +206,7 @@ pub fn shortened(text: &str, size: f64, bold: bool, width: f64) -> String {
 }
 
 /// Points of a circle as a polygon, fine enough for markers.
-pub fn circle(centre: Point, radius: f64) -> Vec<Point> {
+pub fn circle(centre: CanvasPoint, radius: f64) -> Vec<CanvasPoint> {
     (0..24)
         .map(|k| {
             let angle = std::f64::consts::TAU * f64::from(k) / 24.0;

@@ -1,6 +1,6 @@
 //! A canvas of pixels, rasterised by tiny-skia and written as PNG.
 
-use super::canvas::{Canvas, Colour, Point, TextStyle};
+use super::canvas::{Canvas, CanvasPoint, Colour, TextStyle};
 use crate::drawing::canvas;
 use crate::output;
 use ab_glyph::{Font, OutlineCurve};
@@ -116,7 +116,7 @@ fn paint(Colour(r, g, b): Colour) -> Paint<'static> {
     paint
 }
 
-fn polyline(points: &[Point]) -> PathBuilder {
+fn polyline(points: &[CanvasPoint]) -> PathBuilder {
     let mut path = PathBuilder::new();
     for (k, p) in points.iter().enumerate() {
         let (x, y) = (p.0 as f32, p.1 as f32);
@@ -138,13 +138,13 @@ fn finished(path: PathBuilder) -> Option<Path> {
 }
 
 impl Canvas for Raster {
-    fn polygon(&mut self, points: &[Point], fill: Colour) {
+    fn polygon(&mut self, points: &[CanvasPoint], fill: Colour) {
         let mut path = polyline(points);
         path.close();
         self.fill(path, fill);
     }
 
-    fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]) {
+    fn line(&mut self, points: &[CanvasPoint], width: f64, colour: Colour, dash: &[f64]) {
         if let Some(path) = finished(polyline(points)) {
             let stroke = Stroke {
                 width: width as f32,
@@ -158,7 +158,7 @@ impl Canvas for Raster {
         }
     }
 
-    fn text(&mut self, at: Point, text: &str, style: &TextStyle) {
+    fn text(&mut self, at: CanvasPoint, text: &str, style: &TextStyle) {
         let font = canvas::font(style.bold);
         let runs = canvas::runs(text, style.size);
         let total: f64 = runs.iter().map(|r| canvas::run_width(r, style.bold)).sum();

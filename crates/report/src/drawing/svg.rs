@@ -1,6 +1,6 @@
 //! A canvas of SVG elements.
 
-use super::canvas::{Anchor, Canvas, Colour, Point, TextStyle};
+use super::canvas::{Anchor, Canvas, CanvasPoint, Colour, TextStyle};
 use crate::drawing::canvas;
 use crate::output;
 use base::Result;
@@ -60,7 +60,7 @@ fn short(x: f64) -> f64 {
     (x * 100.0).round() / 100.0
 }
 
-fn list(points: &[Point]) -> String {
+fn list(points: &[CanvasPoint]) -> String {
     let pairs: Vec<String> = points
         .iter()
         .map(|p| format!("{},{}", short(p.0), short(p.1)))
@@ -75,7 +75,7 @@ fn escaped(text: &str) -> String {
 }
 
 impl Canvas for Svg {
-    fn polygon(&mut self, points: &[Point], fill: Colour) {
+    fn polygon(&mut self, points: &[CanvasPoint], fill: Colour) {
         self.push(format_args!(
             "<polygon points=\"{}\" fill=\"{}\"/>",
             list(points),
@@ -83,7 +83,7 @@ impl Canvas for Svg {
         ));
     }
 
-    fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]) {
+    fn line(&mut self, points: &[CanvasPoint], width: f64, colour: Colour, dash: &[f64]) {
         let dash = if dash.is_empty() {
             String::new()
         } else {
@@ -98,7 +98,7 @@ impl Canvas for Svg {
         ));
     }
 
-    fn text(&mut self, at: Point, text: &str, style: &TextStyle) {
+    fn text(&mut self, at: CanvasPoint, text: &str, style: &TextStyle) {
         let runs = canvas::runs(text, style.size);
         let down = 0.5 * canvas::CAP_HEIGHT * style.size;
         let weight = if style.bold {

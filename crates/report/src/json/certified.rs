@@ -1,7 +1,7 @@
 //! The part of the record of `solve` about guaranteed bounds of the error, and about the discretisation error.
 
 use super::number;
-use fetifeti::solution::Verdict;
+use fetifeti::solution::CertificationResult;
 use serde::{Deserialize, Serialize};
 
 /// Bounds of the distance from the exact solution of the discrete problem in the energy norm, and estimates of how far
@@ -58,7 +58,7 @@ pub struct BodyError {
 
 impl Certified {
     /// The record of a bound.
-    pub fn new(verdict: &Verdict) -> Certified {
+    pub fn new(verdict: &CertificationResult) -> Certified {
         match verdict {
             Ok(c) => Certified {
                 most: Some(c.most),

@@ -177,7 +177,7 @@ impl From<f64> for Amount {
 /// The form of [`Amount`] in JSON.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum Written {
+enum WrittenContact {
     Number(Option<f64>),
     List(Vec<Option<f64>>),
 }
@@ -186,9 +186,9 @@ impl Serialize for Amount {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         let finite = |x: &f64| x.is_finite().then_some(*x);
         match &self.0[..] {
-            [] => Written::Number(Some(0.0)),
-            [x] => Written::Number(finite(x)),
-            list => Written::List(list.iter().map(finite).collect()),
+            [] => WrittenContact::Number(Some(0.0)),
+            [x] => WrittenContact::Number(finite(x)),
+            list => WrittenContact::List(list.iter().map(finite).collect()),
         }
         .serialize(s)
     }
@@ -197,9 +197,9 @@ impl Serialize for Amount {
 impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
         let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
-        Ok(match Written::deserialize(d)? {
-            Written::Number(x) => number(x).into(),
-            Written::List(list) => Amount(list.into_iter().map(number).collect()),
+        Ok(match WrittenContact::deserialize(d)? {
+            WrittenContact::Number(x) => number(x).into(),
+            WrittenContact::List(list) => Amount(list.into_iter().map(number).collect()),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Values at single points: probes, and the nodes that a deck prints.
 
-use deck::{Quantity, Table, TableRow};
+use deck::{DatQuantity, DatTable, TableRow};
 use serde::{Deserialize, Serialize};
 
 /// The values at a probe.
@@ -36,12 +36,12 @@ pub struct NodePrint {
     pub total_force: Option<[f64; 3]>,
     /// The tables from which it is made, for a `.dat` file.
     #[serde(skip)]
-    pub tables: Vec<Table>,
+    pub tables: Vec<DatTable>,
 }
 
 impl NodePrint {
     /// From the tables of one `*NODE PRINT`.
-    pub fn new(tables: Vec<Table>) -> NodePrint {
+    pub fn new(tables: Vec<DatTable>) -> NodePrint {
         let mut out = NodePrint::default();
         for table in &tables {
             out.set.clone_from(&table.set);
@@ -52,9 +52,9 @@ impl NodePrint {
             };
             let rows = table.rows.iter().map(row);
             match table.quantity {
-                Quantity::Displacement => out.nodes = rows.collect(),
-                Quantity::Force => out.forces = rows.collect(),
-                Quantity::TotalForce => out.total_force = table.rows.first().map(|r| r.vector),
+                DatQuantity::Displacement => out.nodes = rows.collect(),
+                DatQuantity::Force => out.forces = rows.collect(),
+                DatQuantity::TotalForce => out.total_force = table.rows.first().map(|r| r.vector),
             }
         }
         NodePrint { tables, ..out }

@@ -22,56 +22,56 @@ const BLOCK: usize = 1 << 18;
 
 /// Numbers of a data array.
 #[derive(Debug, Clone, Copy)]
-pub enum Values<'a> {
+pub enum ArrayValues<'a> {
     /// Written as Float64.
     Float(&'a [f64]),
     /// Written as Int32.
     Int(&'a [i32]),
 }
 
-impl Values<'_> {
+impl ArrayValues<'_> {
     fn len(&self) -> usize {
         match self {
-            Values::Float(v) => v.len(),
-            Values::Int(v) => v.len(),
+            ArrayValues::Float(v) => v.len(),
+            ArrayValues::Int(v) => v.len(),
         }
     }
 
     /// The name of the type in the file.
     fn kind(&self) -> &'static str {
         match self {
-            Values::Float(_) => "Float64",
-            Values::Int(_) => "Int32",
+            ArrayValues::Float(_) => "Float64",
+            ArrayValues::Int(_) => "Int32",
         }
     }
 
     fn bytes(&self) -> Vec<u8> {
         match self {
-            Values::Float(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
-            Values::Int(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
+            ArrayValues::Float(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
+            ArrayValues::Int(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
         }
     }
 }
 
-impl<'a> From<&'a [f64]> for Values<'a> {
+impl<'a> From<&'a [f64]> for ArrayValues<'a> {
     fn from(v: &'a [f64]) -> Self {
-        Values::Float(v)
+        ArrayValues::Float(v)
     }
 }
 
-impl<'a> From<&'a [i32]> for Values<'a> {
+impl<'a> From<&'a [i32]> for ArrayValues<'a> {
     fn from(v: &'a [i32]) -> Self {
-        Values::Int(v)
+        ArrayValues::Int(v)
     }
 }
 
-struct Array<'a> {
+struct VtuArray<'a> {
     name: String,
     components: usize,
-    values: Values<'a>,
+    values: ArrayValues<'a>,
 }
 
-impl Array<'_> {
+impl VtuArray<'_> {
     fn attributes(&self) -> String {
         attributes(&self.name, self.components, self.values.kind())
     }
@@ -81,8 +81,8 @@ impl Array<'_> {
 pub struct Vtu<'a> {
     points: &'a [[f64; 3]],
     cells: &'a Cells,
-    point_data: Vec<Array<'a>>,
-    cell_data: Vec<Array<'a>>,
+    point_data: Vec<VtuArray<'a>>,
+    cell_data: Vec<VtuArray<'a>>,
 }
 
 impl<'a> Vtu<'a> {
@@ -102,9 +102,9 @@ impl<'a> Vtu<'a> {
         mut self,
         name: &str,
         components: usize,
-        values: impl Into<Values<'a>>,
+        values: impl Into<ArrayValues<'a>>,
     ) -> Self {
-        self.point_data.push(Array {
+        self.point_data.push(VtuArray {
             name: name.to_string(),
             components,
             values: values.into(),
@@ -118,9 +118,9 @@ impl<'a> Vtu<'a> {
         mut self,
         name: &str,
         components: usize,
-        values: impl Into<Values<'a>>,
+        values: impl Into<ArrayValues<'a>>,
     ) -> Self {
-        self.cell_data.push(Array {
+        self.cell_data.push(VtuArray {
             name: name.to_string(),
             components,
             values: values.into(),
@@ -192,7 +192,7 @@ impl<'a> Vtu<'a> {
         array(
             out,
             POINTS,
-            Values::Float(self.points.as_flattened()).bytes(),
+            ArrayValues::Float(self.points.as_flattened()).bytes(),
         )?;
         writeln!(out, "</Points>\n<Cells>")?;
         let nodes = connectivity(self.cells);
@@ -209,7 +209,7 @@ impl<'a> Vtu<'a> {
         writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
 
-    fn data(&self) -> [(&'static str, &[Array<'a>]); 2] {
+    fn data(&self) -> [(&'static str, &[VtuArray<'a>]); 2] {
         [
             ("PointData", &self.point_data),
             ("CellData", &self.cell_data),

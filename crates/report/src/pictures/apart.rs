@@ -4,8 +4,8 @@
 //! may touch in rings, all pairs together are a problem of least squares, weighted by the areas of contact. A body that
 //! lies between two others then moves with neither of them alone, and through none.
 
-use super::mesh::{bounds, Solid};
-use super::surface::{diagonals, Surface};
+use super::mesh::{bounds, SolidMesh};
+use super::surface::{diagonals, VisibleSurface};
 use base::linalg::union_find::UnionFind;
 use base::linalg::vec3::{cross, dot, minus, norm, unit};
 use std::collections::{BTreeMap, HashMap};
@@ -22,11 +22,11 @@ const CLOSED: f64 = 0.05;
 const TIED: f64 = 1e-3;
 
 /// The corners of a face.
-type Corners = [[f64; 3]; 4];
+type FaceCorners = [[f64; 3]; 4];
 
 /// The faces in which two bodies touch.
 #[derive(Default)]
-struct Contact {
+struct TouchingFaces {
     /// The sum of normals out of the first body, each as long as its face is large.
     normals: [f64; 3],
     /// The sum of the areas.
@@ -45,9 +45,9 @@ pub(super) struct Wish {
 }
 
 /// The shift of each body.
-pub(super) fn shifts(solid: &Solid, surface: &Surface) -> Vec<[f64; 3]> {
+pub(super) fn shifts(solid: &SolidMesh, surface: &VisibleSurface) -> Vec<[f64; 3]> {
     let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
-    let mut faces: Vec<Vec<Corners>> = vec![Vec::new(); n];
+    let mut faces: Vec<Vec<FaceCorners>> = vec![Vec::new(); n];
     for face in &surface.faces {
         let corners = face.corners.map(|p| solid.points[p as usize]);
         faces[solid.body[face.cell as usize] as usize].push(corners);
@@ -70,11 +70,11 @@ pub(super) fn shifts(solid: &Solid, surface: &Surface) -> Vec<[f64; 3]> {
             }
         })
         .collect();
-    let mut shifts = balance(n, &wishes);
+    let mut shifts = least_squares_shifts(n, &wishes);
     // Groups of bodies that do not touch move away from the middle.
     let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
     for group in groups(n, &wishes) {
-        let all: Vec<Corners> = group.iter().flat_map(|&b| faces[b].clone()).collect();
+        let all: Vec<FaceCorners> = group.iter().flat_map(|&b| faces[b].clone()).collect();
         // A body number without cells has no middle.
         if !all.is_empty() {
             let away = minus(middle(&all), centre).map(|x| apart * x);
@@ -87,8 +87,8 @@ pub(super) fn shifts(solid: &Solid, surface: &Surface) -> Vec<[f64; 3]> {
 }
 
 /// The faces in which each two bodies touch, with normals out of the first one.
-fn contacts(solid: &Solid, surface: &Surface) -> BTreeMap<[usize; 2], Contact> {
-    let mut out: BTreeMap<[usize; 2], Contact> = BTreeMap::new();
+fn contacts(solid: &SolidMesh, surface: &VisibleSurface) -> BTreeMap<[usize; 2], TouchingFaces> {
+    let mut out: BTreeMap<[usize; 2], TouchingFaces> = BTreeMap::new();
     for face in &surface.faces {
         let body = solid.body[face.cell as usize] as usize;
         let Some(partner) = face.partner.map(|p| p as usize).filter(|p| *p != body) else {
@@ -117,7 +117,7 @@ fn contacts(solid: &Solid, surface: &Surface) -> BTreeMap<[usize; 2], Contact> {
     out
 }
 
-impl Contact {
+impl TouchingFaces {
     /// The direction in which the second body leaves the first: the mean normal; where one encloses the other, the
     /// direction that is nearest to lying in all faces, on the side of `away`.
     fn direction(&self, away: [f64; 3]) -> [f64; 3] {
@@ -153,7 +153,7 @@ impl Contact {
 
 /// The shifts that fulfil the wishes best, by conjugate gradients on the normal equations. Their mean is zero in every
 /// group of bodies that touch.
-pub(super) fn balance(n: usize, wishes: &[Wish]) -> Vec<[f64; 3]> {
+pub(super) fn least_squares_shifts(n: usize, wishes: &[Wish]) -> Vec<[f64; 3]> {
     const ENOUGH: f64 = 1e-10;
     // wᵀ(t_b − t_a), to both bodies.
     let add = |out: &mut [[f64; 3]], wish: &Wish, value: [f64; 3]| {
@@ -209,14 +209,14 @@ fn groups(n: usize, wishes: &[Wish]) -> Vec<Vec<usize>> {
 }
 
 /// The middle of the box around some faces.
-fn middle(faces: &[Corners]) -> [f64; 3] {
+fn middle(faces: &[FaceCorners]) -> [f64; 3] {
     let [low, high] = bounds(faces.iter().flatten().copied());
     [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]))
 }
 
 /// How far a body has to move in a direction until nothing of another one is before it: both are seen along the
 /// direction, in squares as large as their largest face.
-fn clearance(still: &[Corners], moving: &[Corners], along: [f64; 3]) -> f64 {
+fn clearance(still: &[FaceCorners], moving: &[FaceCorners], along: [f64; 3]) -> f64 {
     let axes = {
         let least = (0..3).min_by(|&i, &j| along[i].abs().total_cmp(&along[j].abs()));
         let mut other = [0.0; 3];
@@ -243,7 +243,7 @@ fn clearance(still: &[Corners], moving: &[Corners], along: [f64; 3]) -> f64 {
 }
 
 /// The extent of some faces in a direction.
-fn length(faces: &[Corners], along: [f64; 3]) -> f64 {
+fn length(faces: &[FaceCorners], along: [f64; 3]) -> f64 {
     let [[low], [high]] = bounds(faces.iter().flatten().map(|p| [dot(*p, along)]));
     (high - low).max(0.0)
 }

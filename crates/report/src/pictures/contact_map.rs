@@ -1,11 +1,11 @@
 //! Pressure on the faces where solids may touch: maps of the interfaces with the largest forces, and all rows as CSV.
 
 use super::marks::ContactMark;
-use super::mesh::{bounds, Mesh};
+use super::mesh::{bounds, PlaneMesh};
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
 use super::pieces;
-use super::values::Field;
-use crate::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
+use super::values::ShownField;
+use crate::drawing::canvas::{self, Anchor, Canvas, CanvasPoint, TextStyle};
 use crate::drawing::raster::Raster;
 use crate::drawing::ticks::Scale;
 use crate::interfaces::{self, InterfaceNodes};
@@ -128,9 +128,9 @@ fn draw(maps: &[ContactMap], title: &str) -> Raster {
     raster
 }
 
-fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Point) {
+fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: CanvasPoint) {
     let zeros = vec![0; map.cells.len()];
-    let mesh = Mesh {
+    let mesh = PlaneMesh {
         points: &map.at,
         shown: &map.at,
         corners: &map.cells,
@@ -155,7 +155,7 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
     let middle = (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT);
     raster.text(middle, &name, &TextStyle::title(TEXT));
     let pressure = map.nodes.shown_pressure();
-    let field = Field::nodal("pressure", &pressure);
+    let field = ShownField::nodal("pressure", &pressure);
     // The range always contains zero, the value outside contact.
     let (least, most) = field.range();
     let range = match (least, most) {

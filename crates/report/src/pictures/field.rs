@@ -14,9 +14,9 @@ use base::Result;
 use std::path::Path;
 
 pub use super::marks::ContactMark;
-pub use super::mesh::Mesh;
+pub use super::mesh::PlaneMesh;
 pub use super::rigid_faces::Beside;
-pub use super::values::Field;
+pub use super::values::ShownField;
 
 /// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `contact` lists the
 /// parts of sides that may touch another body or an obstacle, as they are shown; they are marked on the first field. If
@@ -26,8 +26,8 @@ pub use super::values::Field;
 /// [`base::ErrorKind::Input`] when an array does not fit the mesh; [`base::ErrorKind::Environment`] with the path.
 pub fn write(
     beside: &Beside,
-    mesh: &Mesh,
-    fields: &[Field],
+    mesh: &PlaneMesh,
+    fields: &[ShownField],
     contact: &[ContactMark],
     displaced: bool,
     title: &str,
@@ -46,8 +46,8 @@ const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
 fn draw(
     beside: &Beside,
-    mesh: &Mesh,
-    fields: &[Field],
+    mesh: &PlaneMesh,
+    fields: &[ShownField],
     contact: &[ContactMark],
     displaced: bool,
     title: &str,

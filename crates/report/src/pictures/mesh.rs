@@ -5,7 +5,7 @@ use mesh::Cells;
 
 /// Quadrilaterals and triangles in the plane.
 #[derive(Debug, Clone, Copy)]
-pub struct Mesh<'a> {
+pub struct PlaneMesh<'a> {
     /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
     /// subdomain.
     pub points: &'a [[f64; 2]],
@@ -21,7 +21,7 @@ pub struct Mesh<'a> {
 
 /// Solid cells of any kind.
 #[derive(Debug, Clone, Copy)]
-pub struct Solid<'a> {
+pub struct SolidMesh<'a> {
     /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
     /// subdomain.
     pub points: &'a [[f64; 3]],
@@ -36,7 +36,7 @@ pub struct Solid<'a> {
 }
 
 /// The arrays of a mesh, without its positions.
-struct Lists<'a> {
+struct MeshArrays<'a> {
     points: usize,
     shown: usize,
     cells: usize,
@@ -45,10 +45,10 @@ struct Lists<'a> {
     subdomain: &'a [u32],
 }
 
-impl Mesh<'_> {
+impl PlaneMesh<'_> {
     /// Checks that the sizes of the arrays agree.
     pub(super) fn check(&self) -> Result<()> {
-        let lists = Lists {
+        let lists = MeshArrays {
             points: self.points.len(),
             shown: self.shown.len(),
             cells: self.corners.len(),
@@ -65,10 +65,10 @@ impl Mesh<'_> {
     }
 }
 
-impl Solid<'_> {
+impl SolidMesh<'_> {
     /// Checks that the sizes of the arrays agree.
     pub(super) fn check(&self) -> Result<()> {
-        let lists = Lists {
+        let lists = MeshArrays {
             points: self.points.len(),
             shown: self.shown.len(),
             cells: self.cells.len(),
@@ -85,7 +85,7 @@ impl Solid<'_> {
     }
 }
 
-impl Lists<'_> {
+impl MeshArrays<'_> {
     fn check(&self) -> Result<()> {
         let (cells, points) = (self.cells, self.points);
         for (found, expected, what) in [

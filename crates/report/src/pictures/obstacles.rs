@@ -20,14 +20,14 @@ const ALONG: usize = 36;
 
 /// An obstacle as it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Obstacle {
+pub struct ShownObstacle {
     /// Its shape.
     pub rigid: Rigid,
     /// The gap in front of it: its surface is where the distance is −gap.
     pub gap: f64,
 }
 
-impl Obstacle {
+impl ShownObstacle {
     /// Distance from the surface; negative inside.
     fn distance(&self, point: [f64; 3]) -> f64 {
         let inside = match self.rigid {

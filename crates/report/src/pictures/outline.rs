@@ -1,12 +1,12 @@
 //! The lines between the bodies and subdomains of a plane mesh.
 
-use super::mesh::{bounds, rounding, Mesh};
+use super::mesh::{bounds, rounding, PlaneMesh};
 use super::pieces;
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 
 /// Polylines.
-pub(super) struct Lines {
+pub(super) struct OutlineLines {
     /// Around the bodies.
     pub bodies: Vec<Vec<[f64; 2]>>,
     /// Between subdomains of one body.
@@ -14,9 +14,9 @@ pub(super) struct Lines {
 }
 
 /// A position rounded to a millionth of the mesh: equal for all copies of a point.
-type Key = [i64; 2];
+type PlanePositionKey = [i64; 2];
 
-impl Mesh<'_> {
+impl PlaneMesh<'_> {
     /// The number of different bodies or subdomains in a list by cell, if they are numbered consecutively.
     pub(super) fn count(&self, numbers: &[u32]) -> usize {
         numbers.iter().max().map_or(0, |&m| m as usize + 1)
@@ -24,7 +24,7 @@ impl Mesh<'_> {
 
     /// The lines around bodies and between subdomains, with the points at `shown`. With `apart` every body gets its own
     /// outline, because bodies that touched may have separated.
-    pub(super) fn lines(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
+    pub(super) fn lines(&self, shown: &[[f64; 2]], apart: bool) -> OutlineLines {
         // Edges by point numbers: most edges occur twice in one subdomain, and so lie inside it.
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.corners.len());
         for (cell, quad) in self.corners.iter().enumerate() {
@@ -38,15 +38,16 @@ impl Mesh<'_> {
         edges.par_sort_unstable();
         // The remaining edges are compared by position, which is the same for copies of one edge.
         let key = self.rounding();
-        let key_in = |p: u32, body: u32| -> Key {
+        let key_in = |p: u32, body: u32| -> PlanePositionKey {
             let [x, y] = key(self.points[p as usize]);
             // With `apart`, the keys of different bodies are far from each other; differences within a body do not
             // change.
             let far = if apart { i64::from(body) << 24 } else { 0 };
             [x + far, y]
         };
-        let mut at: HashMap<(Key, Key), (bool, u32, usize)> = HashMap::new(); // all of one body?, which, how many
-        let mut position: HashMap<Key, [f64; 2]> = HashMap::new();
+        let mut at: HashMap<(PlanePositionKey, PlanePositionKey), (bool, u32, usize)> =
+            HashMap::new(); // all of one body?, which, how many
+        let mut position: HashMap<PlanePositionKey, [f64; 2]> = HashMap::new();
         for group in edges.chunk_by(|a, b| a.0 == b.0) {
             let subdomain = |e: &(u64, u32)| self.subdomain[e.1 as usize];
             if group.len() == 2 && subdomain(&group[0]) == subdomain(&group[1]) {
@@ -73,7 +74,7 @@ impl Mesh<'_> {
                 bodies.push(ends);
             }
         }
-        Lines {
+        OutlineLines {
             bodies: chains(bodies, &position),
             subdomains: chains(subdomains, &position),
         }
@@ -85,8 +86,8 @@ pub(super) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Ve
     let segments: Vec<_> = segments.collect();
     let ends = || segments.iter().flat_map(|s| [s.0, s.1]);
     let key = rounding(bounds(ends()));
-    let position: HashMap<Key, [f64; 2]> = ends().map(|p| (key(p), p)).collect();
-    let mut edges: Vec<(Key, Key)> = segments
+    let position: HashMap<PlanePositionKey, [f64; 2]> = ends().map(|p| (key(p), p)).collect();
+    let mut edges: Vec<(PlanePositionKey, PlanePositionKey)> = segments
         .iter()
         .map(|&(a, b)| (key(a).min(key(b)), key(a).max(key(b))))
         .collect();
@@ -96,9 +97,12 @@ pub(super) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Ve
 }
 
 /// Joins edges to polylines, straight ahead where possible, so that grids become long straight lines.
-fn chains(mut edges: Vec<(Key, Key)>, position: &HashMap<Key, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+fn chains(
+    mut edges: Vec<(PlanePositionKey, PlanePositionKey)>,
+    position: &HashMap<PlanePositionKey, [f64; 2]>,
+) -> Vec<Vec<[f64; 2]>> {
     edges.sort_unstable();
-    let mut touching: HashMap<Key, Vec<usize>> = HashMap::new();
+    let mut touching: HashMap<PlanePositionKey, Vec<usize>> = HashMap::new();
     for (k, e) in edges.iter().enumerate() {
         touching.entry(e.0).or_default().push(k);
         touching.entry(e.1).or_default().push(k);

@@ -1,8 +1,8 @@
 //! Painting a field on a mesh of quadrilaterals: its position in the picture, cells, axes and colour bar.
 
-use super::mesh::Mesh;
-use super::values::Field;
-use crate::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::mesh::PlaneMesh;
+use super::values::ShownField;
+use crate::drawing::canvas::{self, Anchor, Canvas, CanvasPoint, Colour, TextStyle};
 use crate::drawing::colormap::viridis;
 use crate::drawing::raster::{self, Raster};
 use crate::drawing::ticks::{self, Scale};
@@ -36,8 +36,8 @@ pub(super) fn legend<T>(
     raster: &mut Raster,
     entries: &[(T, &str)],
     sample: f64,
-    middle: Point,
-    draw: impl Fn(&mut Raster, Point, &T),
+    middle: CanvasPoint,
+    draw: impl Fn(&mut Raster, CanvasPoint, &T),
 ) {
     const GAP: f64 = 26.0;
     let width = |label: &str| sample + 8.0 + canvas::text_width(label, TEXT, false);
@@ -55,12 +55,12 @@ pub(super) fn legend<T>(
 pub(super) struct View {
     pub low: [f64; 2],
     pub scale: f64,
-    pub origin: Point,
+    pub origin: CanvasPoint,
 }
 
 impl View {
     /// The position of a point in logical pixels; y grows upwards in the mesh and downwards in the picture.
-    pub fn place(&self, p: [f64; 2]) -> Point {
+    pub fn place(&self, p: [f64; 2]) -> CanvasPoint {
         (
             self.origin.0 + self.scale * (p[0] - self.low[0]),
             self.origin.1 - self.scale * (p[1] - self.low[1]),
@@ -69,7 +69,7 @@ impl View {
 
     /// Draws a polyline of the mesh.
     pub fn line(&self, raster: &mut Raster, points: &[[f64; 2]], width: f64, colour: Colour) {
-        let points: Vec<Point> = points.iter().map(|&p| self.place(p)).collect();
+        let points: Vec<CanvasPoint> = points.iter().map(|&p| self.place(p)).collect();
         raster.line(&points, width, colour, &[]);
     }
 }
@@ -77,8 +77,8 @@ impl View {
 /// Paints all cells. Each is divided into four triangles around its centre, with linear interpolation on each.
 pub(super) fn paint(
     raster: &mut Raster,
-    mesh: &Mesh,
-    field: &Field,
+    mesh: &PlaneMesh,
+    field: &ShownField,
     range: (f64, f64),
     view: &View,
 ) {
@@ -131,7 +131,7 @@ pub(super) fn axes(raster: &mut Raster, view: &View, low: [f64; 2], high: [f64; 
 /// Draws the colour bar with its numbers.
 pub(super) fn colour_bar(
     raster: &mut Raster,
-    at: Point,
+    at: CanvasPoint,
     height: f64,
     range: (f64, f64),
     scale: Scale,

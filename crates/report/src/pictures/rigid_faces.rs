@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::obstacles::{Obstacle, EDGE, GREY};
+use super::obstacles::{ShownObstacle, EDGE, GREY};
 use super::paint::View;
 use crate::drawing::canvas::Canvas;
 use crate::drawing::raster::Raster;
@@ -15,7 +15,7 @@ pub type Polygon = Vec<[f64; 3]>;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Beside<'a> {
     /// Planes, cylinders and spheres.
-    pub obstacles: &'a [Obstacle],
+    pub obstacles: &'a [ShownObstacle],
     /// The faces of rigid surfaces.
     pub faces: &'a [Polygon],
 }

@@ -9,8 +9,8 @@ use super::mesh::bounds;
 use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
 use super::stage::{pale, Stage, CLOSED};
-use super::surface::{diagonals, Surface};
-use super::values::Field;
+use super::surface::{diagonals, VisibleSurface};
+use super::values::ShownField;
 use crate::drawing::canvas::{Anchor, Canvas, Colour, TextStyle};
 use crate::drawing::colormap::viridis;
 use crate::drawing::raster::Raster;
@@ -18,7 +18,7 @@ use base::linalg::vec3::{cross, dot};
 use base::Result;
 use std::path::Path;
 
-pub use super::mesh::Solid;
+pub use super::mesh::SolidMesh;
 pub use super::rigid_faces::Beside;
 pub use super::surface::FaceMark;
 
@@ -36,8 +36,8 @@ const BETTER: f64 = 1.6;
 /// # Errors
 /// [`base::ErrorKind::Input`] when an array does not fit the mesh; [`base::ErrorKind::Environment`] with the path.
 pub fn write_solution(
-    solid: &Solid,
-    fields: &[Field],
+    solid: &SolidMesh,
+    fields: &[ShownField],
     marks: &[FaceMark],
     beside: &Beside,
     title: &str,
@@ -47,8 +47,8 @@ pub fn write_solution(
 }
 
 fn draw(
-    solid: &Solid,
-    fields: &[Field],
+    solid: &SolidMesh,
+    fields: &[ShownField],
     marks: &[FaceMark],
     beside: &Beside,
     title: &str,
@@ -121,7 +121,7 @@ fn draw(
 }
 
 /// The viewpoint that shows most of the marked area; the viewpoint of the first picture if no other is clearly better.
-fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
+fn second_camera(solid: &SolidMesh, surface: &VisibleSurface, several: bool) -> Camera {
     let seen = |camera: &Camera| -> f64 {
         let marked = surface.faces.iter().filter(|f| f.mark.is_some());
         marked
@@ -160,7 +160,7 @@ fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
 }
 
 /// Prints the extent of the undeformed scene.
-fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
+fn extent(raster: &mut Raster, solid: &SolidMesh, at: (f64, f64)) {
     let [low, high] = bounds(solid.points.iter().copied());
     let size = (0..3).fold(0.0_f64, |a, d| a.max(high[d] - low[d]));
     let range = |d: usize| {

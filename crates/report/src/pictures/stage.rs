@@ -1,12 +1,12 @@
 //! A solid from one viewpoint: its surface in the colours of a field, lit, with lines around bodies and between
 //! subdomains.
 
-use super::mesh::{bounds, Solid};
+use super::mesh::{bounds, SolidMesh};
 use super::obstacles::GREY;
 use super::rigid_faces::{triangles, Beside};
 use super::space::{Buffer, Camera};
-use super::surface::{diagonals, unit_cross, Surface};
-use super::values::Field;
+use super::surface::{diagonals, unit_cross, VisibleSurface};
+use super::values::ShownField;
 use crate::drawing::canvas::Colour;
 use crate::drawing::raster::Raster;
 use base::linalg::vec3::{dot, minus};
@@ -22,8 +22,8 @@ const PALE: f64 = 0.45;
 
 /// A solid from one viewpoint, its bodies shifted.
 pub(super) struct Stage<'a> {
-    solid: &'a Solid<'a>,
-    surface: &'a Surface,
+    solid: &'a SolidMesh<'a>,
+    surface: &'a VisibleSurface,
     pub camera: Camera,
     shifts: &'a [[f64; 3]],
     /// The surfaces of obstacles.
@@ -36,8 +36,8 @@ pub(super) struct Stage<'a> {
 
 impl<'a> Stage<'a> {
     pub fn new(
-        solid: &'a Solid<'a>,
-        surface: &'a Surface,
+        solid: &'a SolidMesh<'a>,
+        surface: &'a VisibleSurface,
         camera: Camera,
         shifts: &'a [[f64; 3]],
     ) -> Stage<'a> {
@@ -89,7 +89,13 @@ impl<'a> Stage<'a> {
         (w, h)
     }
 
-    pub fn paint(&self, raster: &mut Raster, field: &Field, range: (f64, f64), at: (f64, f64)) {
+    pub fn paint(
+        &self,
+        raster: &mut Raster,
+        field: &ShownField,
+        range: (f64, f64),
+        at: (f64, f64),
+    ) {
         let (w, h) = self.size();
         let (mut buffer, fine) = Buffer::new(w, h, raster);
         let unit = fine * self.scale;

@@ -1,6 +1,6 @@
 //! The surface of solid bodies for pictures: outer faces, edges of bodies, lines between subdomains.
 
-use super::mesh::Solid;
+use super::mesh::SolidMesh;
 use super::pieces::{edges, pieces};
 use base::linalg::vec3::{cross, dot, minus, unit};
 use rayon::slice::ParallelSliceMut;
@@ -20,7 +20,7 @@ pub struct FaceMark {
 }
 
 /// An outer face, or a part of one.
-pub(super) struct Face {
+pub(super) struct OuterFace {
     /// Corners, counter-clockwise seen from outside; a triangle repeats its last one.
     pub corners: [u32; 4],
     pub cell: u32,
@@ -39,8 +39,8 @@ pub(super) struct Edge {
 }
 
 /// The visible surface of a solid.
-pub(super) struct Surface {
-    pub faces: Vec<Face>,
+pub(super) struct VisibleSurface {
+    pub faces: Vec<OuterFace>,
     pub edges: Vec<Edge>,
 }
 
@@ -48,25 +48,25 @@ pub(super) struct Surface {
 const CREASE: f64 = 0.8;
 
 /// A position rounded to a millionth of the mesh: equal for all copies of a point.
-type Key = [i64; 3];
+type PositionKey = [i64; 3];
 
 /// Places of corners of sides of cells, in increasing order; those of a triangle end with `u32::MAX`.
-type Corners = [u32; 4];
+type CellCorners = [u32; 4];
 
 /// A side of a cell: the cell, and the number of the side.
-type Place = (u32, u8);
+type CellFaceIndex = (u32, u8);
 
-impl Solid<'_> {
+impl SolidMesh<'_> {
     /// The outer surface: the sides that belong to only one cell of a body.
-    pub(super) fn surface(&self, marks: &[FaceMark]) -> Surface {
+    pub(super) fn surface(&self, marks: &[FaceMark]) -> VisibleSurface {
         let key = self.rounding();
         let position = |p: u32| self.points[p as usize];
-        let marked: HashMap<(u32, Key), &FaceMark> = marks
+        let marked: HashMap<(u32, PositionKey), &FaceMark> = marks
             .iter()
             .map(|m| ((m.body, middle(&key, &m.corners)), m))
             .collect();
 
-        let mut by_place: HashMap<(u32, Key), (usize, usize)> = HashMap::new(); // a side, how many there are
+        let mut by_place: HashMap<(u32, PositionKey), (usize, usize)> = HashMap::new(); // a side, how many there are
         let alone = self.sides_of_one_cell();
         for (f, &(cell, side)) in alone.iter().enumerate() {
             let corners = self.corners(cell, side);
@@ -87,7 +87,7 @@ impl Solid<'_> {
             let (c, side) = (cell as usize, usize::from(side));
             let nodes: Vec<u32> = self.cells.side_nodes(c, side).collect();
             let kind = self.cells.kind(c).sides()[side].kind;
-            faces.extend(pieces(kind).iter().map(|piece| Face {
+            faces.extend(pieces(kind).iter().map(|piece| OuterFace {
                 corners: piece.map(|a| nodes[usize::from(a)]),
                 cell,
                 mark: mark.and_then(|m| m.closed),
@@ -95,10 +95,10 @@ impl Solid<'_> {
             }));
         }
         let edges = self.edges(&faces, &|p| key(position(p)));
-        Surface { faces, edges }
+        VisibleSurface { faces, edges }
     }
 
-    fn corners(&self, cell: u32, side: u8) -> Corners {
+    fn corners(&self, cell: u32, side: u8) -> CellCorners {
         let (cell, side) = (cell as usize, usize::from(side));
         let n = self.cells.kind(cell).sides()[side].kind.corners();
         let mut out = [u32::MAX; 4];
@@ -113,8 +113,8 @@ impl Solid<'_> {
     }
 
     /// Sides whose points only one cell has; most sides have two cells and lie inside a body.
-    fn sides_of_one_cell(&self) -> Vec<Place> {
-        let mut all: Vec<(Corners, Place)> = Vec::with_capacity(6 * self.cells.len());
+    fn sides_of_one_cell(&self) -> Vec<CellFaceIndex> {
+        let mut all: Vec<(CellCorners, CellFaceIndex)> = Vec::with_capacity(6 * self.cells.len());
         for (cell, kind) in self.cells.kinds().iter().enumerate() {
             let sides = 0..kind.sides().len() as u8;
             let place = |side| (cell as u32, side);
@@ -125,10 +125,10 @@ impl Solid<'_> {
         groups.filter(|g| g.len() == 1).map(|g| g[0].1).collect()
     }
 
-    fn edges(&self, faces: &[Face], key: &dyn Fn(u32) -> Key) -> Vec<Edge> {
+    fn edges(&self, faces: &[OuterFace], key: &dyn Fn(u32) -> PositionKey) -> Vec<Edge> {
         // (points at the ends of a line, two faces beside it, number of faces beside it).
         type Beside = ([u32; 2], [usize; 2], usize);
-        let mut found: HashMap<(u32, Key, Key), Beside> = HashMap::new();
+        let mut found: HashMap<(u32, PositionKey, PositionKey), Beside> = HashMap::new();
         for (f, face) in faces.iter().enumerate() {
             for (a, b) in edges(face.corners) {
                 let body = self.body[face.cell as usize];
@@ -159,7 +159,7 @@ impl Solid<'_> {
 }
 
 /// Twelve times the centre of a side, from its corners; a triangle may repeat its last one.
-fn middle(key: &dyn Fn([f64; 3]) -> Key, corners: &[[f64; 3]]) -> Key {
+fn middle(key: &dyn Fn([f64; 3]) -> PositionKey, corners: &[[f64; 3]]) -> PositionKey {
     let n = match corners {
         [_, _, a, b] if a != b => 4,
         _ => 3.min(corners.len()),

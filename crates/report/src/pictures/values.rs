@@ -7,47 +7,47 @@ use base::{Error, Result};
 
 /// Numbers to show.
 #[derive(Debug, Clone, Copy)]
-pub enum Values<'a> {
+pub enum ShownValues<'a> {
     /// One per point, interpolated in the cells.
     Nodal(&'a [f64]),
     /// One per cell.
     Cell(&'a [f64]),
 }
 
-impl<'a> Values<'a> {
+impl<'a> ShownValues<'a> {
     fn numbers(self) -> &'a [f64] {
         match self {
-            Values::Nodal(v) | Values::Cell(v) => v,
+            ShownValues::Nodal(v) | ShownValues::Cell(v) => v,
         }
     }
 }
 
 /// A field in a picture: its title, values and scale.
 #[derive(Debug, Clone, Copy)]
-pub struct Field<'a> {
+pub struct ShownField<'a> {
     /// Title above the picture.
     pub title: &'a str,
     /// The values.
-    pub values: Values<'a>,
+    pub values: ShownValues<'a>,
     /// Scale of the colours.
     pub scale: Scale,
 }
 
-impl<'a> Field<'a> {
+impl<'a> ShownField<'a> {
     /// Numbers on points.
     pub fn nodal(title: &'a str, values: &'a [f64]) -> Self {
-        Field {
+        ShownField {
             title,
-            values: Values::Nodal(values),
+            values: ShownValues::Nodal(values),
             scale: Scale::Linear,
         }
     }
 
     /// Numbers on cells.
     pub fn cell(title: &'a str, values: &'a [f64]) -> Self {
-        Field {
+        ShownField {
             title,
-            values: Values::Cell(values),
+            values: ShownValues::Cell(values),
             scale: Scale::Linear,
         }
     }
@@ -60,17 +60,17 @@ impl<'a> Field<'a> {
         } else {
             Scale::Linear
         };
-        Field {
+        ShownField {
             scale,
-            ..Field::cell(title, values)
+            ..ShownField::cell(title, values)
         }
     }
 
     /// Checks that the numbers fit a mesh with these numbers of points and cells.
     pub(super) fn check(&self, points: usize, cells: usize) -> Result<()> {
         let (expected, what) = match self.values {
-            Values::Nodal(_) => (points, "points"),
-            Values::Cell(_) => (cells, "cells"),
+            ShownValues::Nodal(_) => (points, "points"),
+            ShownValues::Cell(_) => (cells, "cells"),
         };
         let found = self.values.numbers().len();
         if found != expected {
@@ -85,8 +85,8 @@ impl<'a> Field<'a> {
     /// The numbers at the corners of a cell.
     pub(super) fn at<const N: usize>(&self, cell: usize, corners: [u32; N]) -> [f64; N] {
         match self.values {
-            Values::Nodal(v) => corners.map(|p| v[p as usize]),
-            Values::Cell(v) => [v[cell]; N],
+            ShownValues::Nodal(v) => corners.map(|p| v[p as usize]),
+            ShownValues::Cell(v) => [v[cell]; N],
         }
     }
 

@@ -1,6 +1,6 @@
 //! Figure 3 of Lee (2010) redrawn: condition numbers against 1/H_b, H_b/H_s and H_s/h, the paper's points and ours.
 
-use super::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use super::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 use crate::drawing::canvas::Colour;
 use crate::drawing::ticks::Scale;
 use crate::json::Table1Row;
@@ -10,40 +10,44 @@ use std::path::{Path, PathBuf};
 
 /// The size of a row that varies in a panel; the other two are 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Family {
+enum VariedSize {
     Bodies,
     Subdomains,
     Elements,
 }
 
-impl Family {
-    const ALL: [Family; 3] = [Family::Bodies, Family::Subdomains, Family::Elements];
+impl VariedSize {
+    const ALL: [VariedSize; 3] = [
+        VariedSize::Bodies,
+        VariedSize::Subdomains,
+        VariedSize::Elements,
+    ];
 
     /// The value on the horizontal axis for a row of this family; `None` for other rows.
     fn abscissa(self, bodies: usize, subdomains: usize, elements: usize) -> Option<f64> {
         let (x, others) = match self {
-            Family::Bodies => (bodies, [subdomains, elements]),
-            Family::Subdomains => (subdomains, [bodies, elements]),
-            Family::Elements => (elements, [bodies, subdomains]),
+            VariedSize::Bodies => (bodies, [subdomains, elements]),
+            VariedSize::Subdomains => (subdomains, [bodies, elements]),
+            VariedSize::Elements => (elements, [bodies, subdomains]),
         };
         (others == [2, 2]).then_some(x as f64)
     }
 
     fn axis(self) -> Axis {
         match self {
-            Family::Bodies => Axis::new("1/H_{b}  (bodies across)", Scale::Linear),
-            Family::Subdomains => {
+            VariedSize::Bodies => Axis::new("1/H_{b}  (bodies across)", Scale::Linear),
+            VariedSize::Subdomains => {
                 Axis::new("H_{b}/H_{s}  (subdomains across a body)", Scale::Linear)
             }
-            Family::Elements => Axis::new("H_{s}/h  (elements across a subdomain)", Scale::Log),
+            VariedSize::Elements => Axis::new("H_{s}/h  (elements across a subdomain)", Scale::Log),
         }
     }
 
     fn title(self) -> &'static str {
         match self {
-            Family::Bodies => "H_{b}/H_{s} = 2, H_{s}/h = 2",
-            Family::Subdomains => "1/H_{b} = 2, H_{s}/h = 2",
-            Family::Elements => "1/H_{b} = 2, H_{b}/H_{s} = 2",
+            VariedSize::Bodies => "H_{b}/H_{s} = 2, H_{s}/h = 2",
+            VariedSize::Subdomains => "1/H_{b} = 2, H_{s}/h = 2",
+            VariedSize::Elements => "1/H_{b} = 2, H_{b}/H_{s} = 2",
         }
     }
 }
@@ -51,7 +55,7 @@ impl Family {
 /// The figure for some rows of Table 1; rows outside the three families of the paper are not shown. Where no exact κ is
 /// known, the estimate of the solve is shown instead.
 pub fn figure(rows: &[Table1Row]) -> Figure {
-    let panels = Family::ALL
+    let panels = VariedSize::ALL
         .into_iter()
         .map(|family| panel(family, rows))
         .collect();
@@ -66,7 +70,7 @@ pub fn figure3(rows: &[Table1Row], stem: &Path) -> Result<Vec<PathBuf>> {
     figure(rows).save(stem)
 }
 
-fn panel(family: Family, rows: &[Table1Row]) -> Panel {
+fn panel(family: VariedSize, rows: &[Table1Row]) -> Panel {
     let mut rows: Vec<(f64, &Table1Row)> = rows
         .iter()
         .filter_map(|r| Some((family.abscissa(r.bodies, r.subdomains, r.elements)?, r)))
@@ -82,7 +86,7 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
     let paper = |label: &str, cond: fn(&paper::PaperRow) -> f64, colour, marker| {
         let points = printed.iter().map(|(x, r)| (*x, cond(r))).collect();
         let series = Series::new(label, points, colour);
-        series.marker(marker, false, 6.5).line(Line::None)
+        series.marker(marker, false, 6.5).line(LineStyle::None)
     };
     let ours = |label: &str, kappa: fn(&Table1Row) -> Option<f64>, colour, marker, line| {
         let points = rows.iter().filter_map(|(x, r)| Some((*x, kappa(r)?)));
@@ -97,7 +101,7 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
         |r| r.whole_interface.coarse_corrected.kappa(),
         |r| r.middle_third.coarse_corrected.kappa(),
     ];
-    let (dashed, diamond, triangle) = (Line::Dashed, Marker::Diamond, Marker::Triangle);
+    let (dashed, diamond, triangle) = (LineStyle::Dashed, Marker::Diamond, Marker::Triangle);
     // The paper's hollow markers come first: ours fill them where both agree.
     let series = vec![
         paper(
@@ -117,14 +121,14 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
             with_m_d[0],
             blue,
             Marker::Circle,
-            Line::Full,
+            LineStyle::Full,
         ),
         ours(
             "(II) ours, M_{D}",
             with_m_d[1],
             red,
             Marker::Square,
-            Line::Full,
+            LineStyle::Full,
         ),
         ours("(I) ours, M_{C}", with_m_c[0], light_blue, diamond, dashed),
         ours("(II) ours, M_{C}", with_m_c[1], light_red, triangle, dashed),

@@ -1,7 +1,7 @@
 //! One panel of a plot: its axes and data.
 
 use super::series::Series;
-use crate::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use crate::drawing::canvas::{self, Anchor, Canvas, CanvasPoint, Colour, TextStyle};
 use crate::drawing::ticks::{self, Scale, Tick};
 
 pub(super) const TEXT: f64 = 13.0;
@@ -138,7 +138,7 @@ impl Panel {
     pub(super) fn draw(
         &self,
         canvas: &mut dyn Canvas,
-        at: Point,
+        at: CanvasPoint,
         size: (f64, f64),
         label_width: f64,
     ) {
@@ -256,7 +256,7 @@ impl Panel {
                     lines.push(Vec::new());
                 }
             }
-            let points: Vec<Point> = lines.iter().flatten().copied().collect();
+            let points: Vec<CanvasPoint> = lines.iter().flatten().copied().collect();
             series.draw(canvas, &lines, &points);
         }
     }

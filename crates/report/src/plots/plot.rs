@@ -2,14 +2,14 @@
 //! data.
 
 use super::panel::{MARGIN, TEXT};
-use crate::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
+use crate::drawing::canvas::{self, Anchor, Canvas, CanvasPoint, TextStyle};
 use crate::drawing::raster::Raster;
 use crate::drawing::svg::Svg;
 use base::Result;
 use std::path::{Path, PathBuf};
 
 pub use super::panel::{Axis, Band, Panel};
-pub use super::series::{Line, Marker, Series};
+pub use super::series::{LineStyle, Marker, Series};
 
 /// Panels in a grid under one title and above one legend.
 #[derive(Debug, Clone)]
@@ -93,11 +93,14 @@ impl Figure {
     }
 
     /// The legend's entries: the first series of every name, then the first band of every name.
-    fn legend(&self) -> Vec<Entry<'_>> {
+    fn legend(&self) -> Vec<LegendEntry<'_>> {
         let series = self.panels.iter().flat_map(|p| &p.series);
         let bands = self.panels.iter().flat_map(|p| &p.bands);
-        let mut out: Vec<Entry> = Vec::new();
-        for entry in series.map(Entry::Series).chain(bands.map(Entry::Band)) {
+        let mut out: Vec<LegendEntry> = Vec::new();
+        for entry in series
+            .map(LegendEntry::Series)
+            .chain(bands.map(LegendEntry::Band))
+        {
             if !entry.label().is_empty() && out.iter().all(|e| e.label() != entry.label()) {
                 out.push(entry);
             }
@@ -164,27 +167,27 @@ impl Figure {
 }
 
 /// A line of the legend.
-enum Entry<'a> {
+enum LegendEntry<'a> {
     Series(&'a Series),
     Band(&'a Band),
 }
 
-impl Entry<'_> {
+impl LegendEntry<'_> {
     fn label(&self) -> &str {
         match self {
-            Entry::Series(s) => &s.label,
-            Entry::Band(b) => &b.label,
+            LegendEntry::Series(s) => &s.label,
+            LegendEntry::Band(b) => &b.label,
         }
     }
 
     /// A sample of `SAMPLE` pixels to the right of a point.
-    fn draw(&self, canvas: &mut dyn Canvas, (x, y): Point) {
+    fn draw(&self, canvas: &mut dyn Canvas, (x, y): CanvasPoint) {
         let end = x + SAMPLE;
         match self {
-            Entry::Series(s) => {
+            LegendEntry::Series(s) => {
                 s.draw(canvas, &[vec![(x, y), (end, y)]], &[(x + 0.5 * SAMPLE, y)]);
             }
-            Entry::Band(b) => {
+            LegendEntry::Band(b) => {
                 let (top, bottom) = (y - 0.5 * TEXT, y + 0.5 * TEXT);
                 let corners = [(x, top), (end, top), (end, bottom), (x, bottom)];
                 canvas.polygon(&corners, b.colour);

@@ -1,6 +1,6 @@
 //! Multiplier and gap along the interfaces: a figure for the interfaces with the largest forces, and all data as CSV.
 
-use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
+use super::plot::{Axis, Band, Figure, LineStyle, Marker, Panel, Series};
 use crate::drawing::canvas::Colour;
 use crate::drawing::ticks::{self, Scale};
 use crate::interfaces::{self, InterfaceNodes};
@@ -22,14 +22,14 @@ const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 
 /// An interface in the plane.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Profile {
+pub struct InterfaceProfile {
     /// Its nodes.
     pub nodes: InterfaceNodes,
     /// Name of the coordinate along the interface, such as `y`.
     pub label: String,
 }
 
-impl Profile {
+impl InterfaceProfile {
     /// Position of a node along the interface.
     fn t(&self, k: usize) -> f64 {
         self.nodes.t[k][0]
@@ -106,7 +106,7 @@ impl Profile {
         let zero = |x: (f64, f64)| {
             Series::new("", vec![(x.0, 0.0), (x.1, 0.0)], Colour::CYCLE[7])
                 .line_only()
-                .line(Line::Dotted)
+                .line(LineStyle::Dotted)
         };
         let x = self.range();
         // Rounding errors are not magnified to the size of the panel, and the range always contains zero, the gap of
@@ -163,7 +163,7 @@ impl Profile {
 ///
 /// # Errors
 /// [`base::ErrorKind::Input`] when the arrays of an interface differ in length.
-pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
+pub fn figure(profiles: &[InterfaceProfile], title: &str) -> Result<Figure> {
     profiles.iter().try_for_each(|p| p.nodes.check(&[]))?;
     let known = profiles.iter().filter(|p| !p.nodes.t.is_empty());
     let (order, title) = interfaces::largest(known, |p| &p.nodes, SHOWN, title);
@@ -201,7 +201,7 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 /// # Errors
 /// [`base::ErrorKind::Input`] when the lists of an interface differ in length; [`base::ErrorKind::Environment`] with
 /// the path.
-pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
+pub fn write(profiles: &[InterfaceProfile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
     interfaces::csv(profiles.iter().map(|p| &p.nodes), false).write_csv(&csv)?;

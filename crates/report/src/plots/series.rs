@@ -1,6 +1,6 @@
 //! A series of a plot: points with their markers, line, and name in the legend.
 
-use crate::drawing::canvas::{self, Canvas, Colour, Point};
+use crate::drawing::canvas::{self, Canvas, CanvasPoint, Colour};
 
 /// Shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Marker {
 
 /// The line that joins points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum LineStyle {
     /// No line.
     None,
     /// By a full line.
@@ -46,7 +46,7 @@ pub struct Series {
     /// Radius of the markers in logical pixels.
     pub size: f64,
     /// The line that joins the points.
-    pub line: Line,
+    pub line: LineStyle,
 }
 
 impl Series {
@@ -59,7 +59,7 @@ impl Series {
             marker: Marker::Circle,
             filled: true,
             size: 4.0,
-            line: Line::Full,
+            line: LineStyle::Full,
         }
     }
 
@@ -78,18 +78,23 @@ impl Series {
 
     /// Changes the line.
     #[must_use]
-    pub fn line(mut self, line: Line) -> Self {
+    pub fn line(mut self, line: LineStyle) -> Self {
         self.line = line;
         self
     }
 
-    pub(super) fn draw(&self, canvas: &mut dyn Canvas, lines: &[Vec<Point>], points: &[Point]) {
+    pub(super) fn draw(
+        &self,
+        canvas: &mut dyn Canvas,
+        lines: &[Vec<CanvasPoint>],
+        points: &[CanvasPoint],
+    ) {
         let dash: &[f64] = match self.line {
-            Line::Dashed => &[7.0, 4.0],
-            Line::Dotted => &[2.0, 3.0],
+            LineStyle::Dashed => &[7.0, 4.0],
+            LineStyle::Dotted => &[2.0, 3.0],
             _ => &[],
         };
-        if self.line != Line::None {
+        if self.line != LineStyle::None {
             for line in lines.iter().filter(|l| l.len() > 1) {
                 canvas.line(line, 1.6, self.colour, dash);
             }
@@ -108,7 +113,7 @@ impl Series {
 }
 
 impl Marker {
-    fn shape(self, (x, y): Point, r: f64) -> Option<Vec<Point>> {
+    fn shape(self, (x, y): CanvasPoint, r: f64) -> Option<Vec<CanvasPoint>> {
         let r = r.max(0.1);
         match self {
             Marker::None => None,

@@ -5,7 +5,7 @@ use super::table::{count, fixed, scientific, Table};
 use crate::drawing::canvas::Colour;
 use crate::drawing::ticks::Scale;
 use crate::json::{BenchCase, BenchReport, BenchRow, Spread};
-use crate::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use crate::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 
 /// All cases for terminals.
 pub fn text(report: &BenchReport) -> String {
@@ -185,7 +185,7 @@ pub fn figure(report: &BenchReport) -> Figure {
             series.push(
                 Series::new(name, vec![(total.median, error)], colour(row))
                     .marker(marker(row), !given, 4.5)
-                    .line(Line::None),
+                    .line(LineStyle::None),
             );
         }
         let x = Axis::new("seconds, set-up and solve", Scale::Log);

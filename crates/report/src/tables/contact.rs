@@ -23,7 +23,13 @@ pub fn contact(r: &ContactReport) -> String {
         plural(r.factorisations, "factorisation"),
         plural(r.distinct_subdomains, "distinct subdomain")
     );
-    for part in [outer(r), load_steps(r), forces(r), sliding(r), balance(r)] {
+    for part in [
+        outer(r),
+        load_steps(r),
+        forces(r),
+        sliding(r),
+        balance_table(r),
+    ] {
         if !part.is_empty() {
             text += &format!("\n{part}");
         }
@@ -262,7 +268,7 @@ fn vector(components: &[f64]) -> String {
     format!("({})", each.join(", "))
 }
 
-fn balance(r: &ContactReport) -> String {
+fn balance_table(r: &ContactReport) -> String {
     if r.bodies.is_empty() {
         return String::new();
     }

@@ -56,7 +56,7 @@ fn no_body_of_a_ring_moves_through_another() {
             });
         }
     }
-    let t = balance(rollers + 2, &wishes);
+    let t = least_squares_shifts(rollers + 2, &wishes);
     for Wish {
         bodies: [a, b],
         shift,
@@ -87,7 +87,7 @@ fn no_body_of_a_ring_moves_through_another() {
 fn a_body_leaves_one_that_encloses_it_along_their_axis() {
     let axis = [0.6, 0.0, 0.8];
     let side = [0.8, 0.0, -0.6];
-    let mut contact = Contact::default();
+    let mut contact = TouchingFaces::default();
     for k in 0..12 {
         let angle = f64::from(k).mul_add(30.0, 7.0).to_radians();
         let normal = [0, 1, 2].map(|d| angle.cos() * side[d] + angle.sin() * [0.0, 1.0, 0.0][d]);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::drawing::colormap::viridis;
-use crate::pictures::obstacles::Obstacle;
+use crate::pictures::obstacles::ShownObstacle;
 use crate::pictures::outline::tests::grid;
 
 #[test]
@@ -13,7 +13,7 @@ fn colours_stand_for_values() {
     let picture = draw(
         &Beside::default(),
         &mesh.view(),
-        &[Field::nodal("u", &u)],
+        &[ShownField::nodal("u", &u)],
         &[],
         false,
         "",
@@ -45,7 +45,7 @@ fn the_contact_zone_is_marked_on_u() {
     // Two bodies that touch along x = 1/2 in its lower half; the upper half is open.
     let mesh = grid(2, 2, 4, false);
     let u = vec![0.5; mesh.points.len()];
-    let field = [Field::nodal("u", &u); 2];
+    let field = [ShownField::nodal("u", &u); 2];
     let marks: Vec<ContactMark> = (0..16)
         .map(|k| ContactMark {
             from: [0.5, f64::from(k) / 16.0],
@@ -78,9 +78,9 @@ fn the_contact_zone_is_marked_on_u() {
 }
 
 /// u and ρ.
-fn both<'a>(u: &'a [f64], rho: &'a [f64]) -> [Field<'a>; 2] {
-    let rho = Field::coefficient("coefficient ρ", rho);
-    [Field::nodal("solution u", u), rho]
+fn both<'a>(u: &'a [f64], rho: &'a [f64]) -> [ShownField<'a>; 2] {
+    let rho = ShownField::coefficient("coefficient ρ", rho);
+    [ShownField::nodal("solution u", u), rho]
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn a_million_cells_are_painted() {
 fn obstacles_stand_beside_bodies() {
     let mesh = grid(1, 1, 2, false);
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
-    let ground = Obstacle {
+    let ground = ShownObstacle {
         rigid: scene::Rigid::Plane {
             point: [0.0; 3],
             normal: [0.0, 1.0, 0.0],
@@ -143,7 +143,7 @@ fn obstacles_stand_beside_bodies() {
             faces: &[],
         },
         &mesh.view(),
-        &[Field::nodal("u", &u)],
+        &[ShownField::nodal("u", &u)],
         &[],
         true,
         "",
@@ -174,7 +174,7 @@ fn rigid_surfaces_stand_beside_bodies() {
     let picture = draw(
         &beside,
         &mesh.view(),
-        &[Field::nodal("u", &u)],
+        &[ShownField::nodal("u", &u)],
         &[],
         true,
         "",

@@ -4,7 +4,7 @@ use super::*;
 
 const BODIES: [[f64; 3]; 2] = [[0.0; 3], [2.0, 1.0, 1.0]];
 
-fn obstacles() -> [Obstacle; 4] {
+fn obstacles() -> [ShownObstacle; 4] {
     let round = |axis, radius, cavity| Rigid::Round {
         centre: [1.0, 3.0, 0.5],
         axis,
@@ -21,7 +21,7 @@ fn obstacles() -> [Obstacle; 4] {
         round(Some([0.0, 0.0, 1.0]), 0.2, false),
         round(None, 40.0, true),
     ];
-    shapes.map(|rigid| Obstacle { rigid, gap: 0.1 })
+    shapes.map(|rigid| ShownObstacle { rigid, gap: 0.1 })
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn triangles_lie_on_the_surface_in_front_of_the_gap() {
 /// The area of a whole sphere and of a rectangle under the bodies.
 #[test]
 fn triangles_cover_the_surface() {
-    let area = |obstacle: &Obstacle| -> f64 {
+    let area = |obstacle: &ShownObstacle| -> f64 {
         let all = obstacle.triangles(BODIES);
         let of = |t: &[[f64; 3]; 3]| 0.5 * norm(cross(minus(t[1], t[0]), minus(t[2], t[0])));
         all.iter().map(of).sum()
@@ -51,7 +51,7 @@ fn triangles_cover_the_surface() {
     let beyond = BEYOND * 6.0_f64.sqrt();
     let plane = (2.0 + 2.0 * beyond) * (1.0 + 2.0 * beyond);
     assert!((area(&obstacles()[0]) - plane).abs() < 1e-12);
-    let small = Obstacle {
+    let small = ShownObstacle {
         rigid: Rigid::Round {
             centre: [1.0, 3.0, 0.5],
             axis: None,
@@ -72,7 +72,7 @@ fn a_disc_is_grey_and_its_surroundings_are_not() {
         scale: 100.0,
         origin: (0.0, 100.0),
     };
-    let disc = Obstacle {
+    let disc = ShownObstacle {
         rigid: Rigid::Round {
             centre: [0.5, 0.75, 0.0],
             axis: Some([0.0, 0.0, 1.0]),

@@ -11,8 +11,8 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    pub(crate) fn view(&self) -> Mesh<'_> {
-        Mesh {
+    pub(crate) fn view(&self) -> PlaneMesh<'_> {
+        PlaneMesh {
             points: &self.points,
             shown: &self.points,
             corners: &self.quads,
@@ -113,12 +113,12 @@ fn segments_become_long_lines() {
 #[test]
 fn misfits_are_refused() {
     let mesh = grid(1, 1, 2, false);
-    let short = Mesh {
+    let short = PlaneMesh {
         body: &mesh.body[..3],
         ..mesh.view()
     };
     assert!(short.check().unwrap_err().to_string().contains("3 bodies"));
-    let far = Mesh {
+    let far = PlaneMesh {
         points: &mesh.points[..8],
         shown: &mesh.points[..8],
         ..mesh.view()

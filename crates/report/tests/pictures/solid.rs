@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::drawing::ticks::Scale;
-use crate::pictures::obstacles::Obstacle;
+use crate::pictures::obstacles::ShownObstacle;
 use crate::pictures::surface::tests::Blocks;
-use crate::pictures::values::Values;
+use crate::pictures::values::ShownValues;
 
 fn count(raster: &Raster, is: impl Fn(Colour) -> bool) -> [usize; 2] {
     let (w, h) = raster.size();
@@ -19,9 +19,9 @@ fn count(raster: &Raster, is: impl Fn(Colour) -> bool) -> [usize; 2] {
 fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
     let blocks = Blocks::new(2, 4);
     let u: Vec<f64> = blocks.points.iter().map(|p| p[1]).collect();
-    let field = Field {
+    let field = ShownField {
         title: "u",
-        values: Values::Nodal(&u),
+        values: ShownValues::Nodal(&u),
         scale: Scale::Linear,
     };
     let marks: Vec<FaceMark> = (0..16)
@@ -73,9 +73,9 @@ fn the_lower_side_is_shown_where_it_touches() {
 #[test]
 fn fields_of_the_wrong_length_are_refused() {
     let blocks = Blocks::new(1, 2);
-    let field = Field {
+    let field = ShownField {
         title: "u",
-        values: Values::Cell(&[1.0; 5]),
+        values: ShownValues::Cell(&[1.0; 5]),
         scale: Scale::Linear,
     };
     let error = draw(&blocks.view(), &[field; 2], &[], &Beside::default(), "")
@@ -89,7 +89,7 @@ fn fields_of_the_wrong_length_are_refused() {
 fn obstacles_are_shown_where_bodies_are_in_their_places() {
     let blocks = Blocks::new(1, 2);
     let u = vec![0.0; blocks.points.len()];
-    let ball = Obstacle {
+    let ball = ShownObstacle {
         rigid: scene::Rigid::Round {
             centre: [0.5, 1.4, 0.5],
             axis: None,
@@ -98,9 +98,9 @@ fn obstacles_are_shown_where_bodies_are_in_their_places() {
         },
         gap: 0.0,
     };
-    let fields = [Field::nodal("u", &u); 2];
+    let fields = [ShownField::nodal("u", &u); 2];
     let grey = |c: Colour| c.0 == c.1 && c.1 == c.2 && (0x80..0xd8).contains(&c.0);
-    let grey = |obstacles: &[Obstacle]| {
+    let grey = |obstacles: &[ShownObstacle]| {
         let picture = draw(
             &blocks.view(),
             &fields,

@@ -46,8 +46,8 @@ impl Blocks {
         out
     }
 
-    pub(crate) fn view(&self) -> Solid<'_> {
-        Solid {
+    pub(crate) fn view(&self) -> SolidMesh<'_> {
+        SolidMesh {
             points: &self.points,
             shown: &self.points,
             cells: &self.cells,
@@ -107,12 +107,12 @@ fn the_surface_of_two_cubes() {
 fn misfits_are_refused() {
     let blocks = Blocks::new(1, 2);
     let view = blocks.view();
-    let short = Solid {
+    let short = SolidMesh {
         body: &blocks.body[1..],
         ..view
     };
     assert!(short.check().unwrap_err().to_string().contains("7 bodies"));
-    let far = Solid {
+    let far = SolidMesh {
         points: &blocks.points[1..],
         shown: &blocks.points[1..],
         ..view
@@ -122,9 +122,9 @@ fn misfits_are_refused() {
 }
 
 /// The volume that some faces enclose, by the divergence theorem.
-fn volume(solid: &Solid, surface: &Surface) -> f64 {
+fn volume(solid: &SolidMesh, surface: &VisibleSurface) -> f64 {
     let triangle = |[a, b, c]: [[f64; 3]; 3]| dot(a, cross(b, c)) / 6.0;
-    let face = |f: &Face| {
+    let face = |f: &OuterFace| {
         let [a, b, c, d] = f.corners.map(|p| solid.points[p as usize]);
         triangle([a, b, c]) + triangle([a, c, d])
     };
@@ -157,7 +157,7 @@ fn the_surface_of_cells_of_other_kinds() {
         }
         cells.push(CellKind::Tet10, &nodes);
     }
-    let solid = Solid {
+    let solid = SolidMesh {
         points: &points,
         shown: &points,
         cells: &cells,
@@ -190,7 +190,7 @@ fn the_surface_of_cells_of_other_kinds() {
     let mut cells = Cells::default();
     cells.push(CellKind::Wedge6, &[0, 1, 2, 3, 4, 5]);
     cells.push(CellKind::Pyramid5, &[1, 2, 5, 4, 6]);
-    let solid = Solid {
+    let solid = SolidMesh {
         points: &points,
         shown: &points,
         cells: &cells,

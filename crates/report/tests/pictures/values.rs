@@ -5,17 +5,17 @@ use super::*;
 #[test]
 fn constant_and_foreign_values_have_a_colour() {
     let values = [3.0, 3.0];
-    let field = Field {
+    let field = ShownField {
         title: "",
-        values: Values::Cell(&values),
+        values: ShownValues::Cell(&values),
         scale: Scale::Linear,
     };
     let (low, high) = field.range();
     assert!(low < 3.0 && high > 3.0);
     let nothing = [f64::NAN, -1.0];
     assert_eq!(
-        Field {
-            values: Values::Cell(&nothing),
+        ShownField {
+            values: ShownValues::Cell(&nothing),
             scale: Scale::Log,
             ..field
         }

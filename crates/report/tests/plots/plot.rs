@@ -7,19 +7,19 @@ use crate::drawing::ticks::Scale;
 /// A canvas that records the calls.
 #[derive(Default)]
 struct Recorder {
-    lines: Vec<(Vec<Point>, Colour)>,
-    polygons: Vec<(Vec<Point>, Colour)>,
-    texts: Vec<(Point, String)>,
+    lines: Vec<(Vec<CanvasPoint>, Colour)>,
+    polygons: Vec<(Vec<CanvasPoint>, Colour)>,
+    texts: Vec<(CanvasPoint, String)>,
 }
 
 impl Canvas for Recorder {
-    fn polygon(&mut self, points: &[Point], fill: Colour) {
+    fn polygon(&mut self, points: &[CanvasPoint], fill: Colour) {
         self.polygons.push((points.to_vec(), fill));
     }
-    fn line(&mut self, points: &[Point], _: f64, colour: Colour, _: &[f64]) {
+    fn line(&mut self, points: &[CanvasPoint], _: f64, colour: Colour, _: &[f64]) {
         self.lines.push((points.to_vec(), colour));
     }
-    fn text(&mut self, at: Point, text: &str, _: &TextStyle) {
+    fn text(&mut self, at: CanvasPoint, text: &str, _: &TextStyle) {
         self.texts.push((at, text.to_string()));
     }
 }

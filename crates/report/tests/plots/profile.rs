@@ -4,7 +4,7 @@ use super::*;
 use crate::output::tests::Scratch;
 
 /// An interface of n nodes on 0..1 that touches in the middle half, with a force that grows with `size`.
-fn sample(name: &str, n: usize, size: f64) -> Profile {
+fn sample(name: &str, n: usize, size: f64) -> InterfaceProfile {
     let t: Vec<f64> = (0..n).map(|k| k as f64 / (n - 1) as f64).collect();
     let pressure = |t: f64| size * (0.0625 - (t - 0.5).powi(2)).max(0.0);
     let gap = |t: f64| 0.01 * ((t - 0.5).powi(2) - 0.0625).max(0.0);
@@ -18,7 +18,7 @@ fn sample(name: &str, n: usize, size: f64) -> Profile {
         smoothed: Vec::new(),
         t: t.iter().map(|&t| [t, 0.0]).collect(),
     };
-    Profile {
+    InterfaceProfile {
         nodes,
         label: "y".into(),
     }
@@ -40,7 +40,7 @@ fn the_zone_reaches_half_way_to_its_neighbours() {
         active: vec![true, false, true, false, false],
         ..q.nodes
     };
-    let ranges = |p: &Profile| p.zone().iter().map(|b| b.range).collect::<Vec<_>>();
+    let ranges = |p: &InterfaceProfile| p.zone().iter().map(|b| b.range).collect::<Vec<_>>();
     assert_eq!(ranges(&q), [(0.375, 0.625), (0.875, 1.0)]);
     q.nodes.active = vec![true; 5];
     assert_eq!(ranges(&q), [(0.0, 1.0)]);
@@ -50,7 +50,7 @@ fn the_zone_reaches_half_way_to_its_neighbours() {
 
 #[test]
 fn the_largest_forces_are_shown() {
-    let profiles: Vec<Profile> = (0..180)
+    let profiles: Vec<InterfaceProfile> = (0..180)
         .map(|k| sample(&format!("i{k}"), 9, 1.0 + ((k * 77) % 180) as f64))
         .collect();
     let figure = figure(&profiles, "grid").unwrap();

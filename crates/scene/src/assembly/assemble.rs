@@ -1,8 +1,8 @@
 //! Stiffness of one subdomain, and the loads that follow from given values.
 
-use super::cells::Cells;
+use super::cells::CellStiffness;
 use super::sparse;
-use super::{Elements, Grid, SubdomainMesh};
+use super::{Grid, SubdomainElements, SubdomainMesh};
 use base::linalg::csr::Csr;
 use mesh::places;
 
@@ -16,8 +16,8 @@ type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 /// it: they come out in order and sorted, and no search is needed.
 pub fn matrix(mesh: &SubdomainMesh) -> Csr {
     let grid = match &mesh.elements {
-        Elements::Grid(grid) => grid,
-        Elements::Cells(cells) => return sparse::matrix(mesh, cells),
+        SubdomainElements::Grid(grid) => grid,
+        SubdomainElements::Cells(cells) => return sparse::matrix(mesh, cells),
     };
     match mesh.components() {
         1 => rows::<1>(mesh, grid),
@@ -30,8 +30,8 @@ pub fn matrix(mesh: &SubdomainMesh) -> Csr {
 /// mesh. They do not change when given values are scaled.
 pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
     let grid = match &mesh.elements {
-        Elements::Grid(grid) => grid,
-        Elements::Cells(cells) => return sparse::given_columns(mesh, cells),
+        SubdomainElements::Grid(grid) => grid,
+        SubdomainElements::Cells(cells) => return sparse::given_columns(mesh, cells),
     };
     match mesh.components() {
         1 => columns::<1>(mesh, grid),
@@ -53,7 +53,7 @@ pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> 
 }
 
 fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid) -> Csr {
-    let cells = Cells::new(mesh, grid);
+    let cells = CellStiffness::new(mesh, grid);
     let n = mesh.n_free();
     let width = C * 3_usize.pow(mesh.dim as u32);
     let mut k = Csr {
@@ -102,7 +102,7 @@ fn columns<const C: usize>(mesh: &SubdomainMesh, grid: &Grid) -> Csr {
             (0..C).any(|j| given(C * other + j) && mesh.prescribed[C * other + j] != 0.0)
         });
         let stencil = beside.then(|| {
-            let cells = cells.get_or_insert_with(|| Cells::new(mesh, grid));
+            let cells = cells.get_or_insert_with(|| CellStiffness::new(mesh, grid));
             stencil::<C>(grid, cells, place)
         });
         for c in (0..C).filter(|c| !given(C * node + c)) {
@@ -139,7 +139,11 @@ fn neighbours<'s, const C: usize>(
 
 /// The rows of K at a node.
 #[inline]
-fn stencil<const C: usize>(grid: &Grid, cells: &Cells<'_>, place: [usize; 3]) -> Stencil<C> {
+fn stencil<const C: usize>(
+    grid: &Grid,
+    cells: &CellStiffness<'_>,
+    place: [usize; 3],
+) -> Stencil<C> {
     let mut out = [[[0.0; C]; C]; 27];
     let corners = grid.corners();
     let n = corners * C;

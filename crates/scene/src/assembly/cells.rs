@@ -6,12 +6,12 @@ use elements::q1;
 use std::collections::HashMap;
 
 /// The element matrices of a subdomain.
-pub struct Cells<'m> {
+pub struct CellStiffness<'m> {
     mesh: &'m SubdomainMesh,
-    kind: Kind,
+    kind: ElementStiffness,
 }
 
-enum Kind {
+enum ElementStiffness {
     /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and the index of each element's matrix
     /// (empty: the first).
     Boxes { unit: Vec<Vec<f64>>, of: Vec<u32> },
@@ -19,31 +19,31 @@ enum Kind {
     Each { n: usize, all: Vec<f64> },
 }
 
-impl<'m> Cells<'m> {
+impl<'m> CellStiffness<'m> {
     /// Computes the matrices.
-    pub fn new(mesh: &'m SubdomainMesh, grid: &Grid) -> Cells<'m> {
+    pub fn new(mesh: &'m SubdomainMesh, grid: &Grid) -> CellStiffness<'m> {
         let n = grid.corners() * mesh.components();
         let kind = match grid.step {
             Some(step) => boxes(mesh, step, n),
             None => each(mesh, grid, n),
         };
-        Cells { mesh, kind }
+        CellStiffness { mesh, kind }
     }
 
     /// The matrix of element `e` by rows, and the factor that multiplies it.
     #[inline]
     pub fn at(&self, e: usize) -> (&[f64], f64) {
         match &self.kind {
-            Kind::Boxes { unit, of } => {
+            ElementStiffness::Boxes { unit, of } => {
                 let which = of.get(e).map_or(0, |&k| k as usize);
                 (&unit[which], self.mesh.rho[e])
             }
-            Kind::Each { n, all } => (&all[e * n * n..(e + 1) * n * n], 1.0),
+            ElementStiffness::Each { n, all } => (&all[e * n * n..(e + 1) * n * n], 1.0),
         }
     }
 }
 
-fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
+fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> ElementStiffness {
     let corner = |a: usize| [0, 1, 2].map(|d| step[d] * (a >> d & 1) as f64);
     let points: Vec<[f64; 3]> = (0..1 << mesh.dim).map(corner).collect();
     let matrix = |poisson: f64| {
@@ -57,7 +57,7 @@ fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
     };
     let first = mesh.poisson.first().copied().unwrap_or(0.0);
     if mesh.poisson.iter().all(|&p| p == first) {
-        return Kind::Boxes {
+        return ElementStiffness::Boxes {
             unit: vec![matrix(first)],
             of: Vec::new(),
         };
@@ -71,10 +71,10 @@ fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
         })
     });
     let of = of.collect();
-    Kind::Boxes { unit, of }
+    ElementStiffness::Boxes { unit, of }
 }
 
-fn each(mesh: &SubdomainMesh, grid: &Grid, n: usize) -> Kind {
+fn each(mesh: &SubdomainMesh, grid: &Grid, n: usize) -> ElementStiffness {
     let mut all = vec![0.0; n * n * mesh.n_elements()];
     for (e, (out, place)) in all
         .chunks_exact_mut(n * n)
@@ -86,5 +86,5 @@ fn each(mesh: &SubdomainMesh, grid: &Grid, n: usize) -> Kind {
         let element = mesh.form.element;
         cell::stiffness(mesh.dim, &points[..grid.corners()], element, &material, out);
     }
-    Kind::Each { n, all }
+    ElementStiffness::Each { n, all }
 }

@@ -1,7 +1,7 @@
 //! The energy of given values alone.
 
-use super::cells::Cells;
-use super::{sparse, Elements, Grid, SubdomainMesh};
+use super::cells::CellStiffness;
+use super::{sparse, Grid, SubdomainElements, SubdomainMesh};
 
 /// ½ u_Dᵀ K_DD u_D − f_Dᵀ u_D of one subdomain, springs included; zero where all given values are zero. `load` has an
 /// entry per degree of freedom.
@@ -11,8 +11,8 @@ pub fn given_energy(mesh: &SubdomainMesh, load: &[f64]) -> f64 {
     }
     let c = mesh.components();
     let mut energy = match &mesh.elements {
-        Elements::Grid(grid) => of_grid(mesh, grid),
-        Elements::Cells(cells) => sparse::energy_of_given(mesh, cells),
+        SubdomainElements::Grid(grid) => of_grid(mesh, grid),
+        SubdomainElements::Cells(cells) => sparse::energy_of_given(mesh, cells),
     };
     for (k, u) in mesh.prescribed.iter().enumerate() {
         let spring = mesh.spring.get(k / c).copied().unwrap_or(0.0);
@@ -23,7 +23,7 @@ pub fn given_energy(mesh: &SubdomainMesh, load: &[f64]) -> f64 {
 
 /// ½ u_Dᵀ K_DD u_D of the elements of a grid.
 fn of_grid(mesh: &SubdomainMesh, grid: &Grid) -> f64 {
-    let (cells, c) = (Cells::new(mesh, grid), mesh.components());
+    let (cells, c) = (CellStiffness::new(mesh, grid), mesh.components());
     let n = grid.corners() * c;
     let mut energy = 0.0;
     for (e, place) in grid.element_places().enumerate() {

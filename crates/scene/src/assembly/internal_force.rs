@@ -1,7 +1,7 @@
 //! The forces with which the elements of a subdomain resist a displacement.
 
-use super::cells::Cells;
-use super::{sparse, Elements, Grid, SubdomainMesh};
+use super::cells::CellStiffness;
+use super::{sparse, Grid, SubdomainElements, SubdomainMesh};
 
 /// K u at all degrees of freedom, given ones included; springs add to K. `nodal` has an entry per degree of freedom.
 pub fn internal_force(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<f64> {
@@ -21,7 +21,7 @@ pub fn internal_force(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<f64> {
 
 /// The forces that hold a subdomain at given values.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Held {
+pub struct InternalForce {
     /// (degree of freedom of the mesh, row of K times u without springs).
     pub force: Vec<(usize, f64)>,
     /// The sum of the sizes of all terms: their rounding is a part of it.
@@ -32,10 +32,10 @@ pub struct Held {
 
 /// K u at given values, and vᵀ K v of some `motions` that are zero at free degrees of freedom. Only elements beside
 /// given values are looked at.
-pub fn force_at_given(mesh: &SubdomainMesh, nodal: &[f64], motions: &[Vec<f64>]) -> Held {
+pub fn force_at_given(mesh: &SubdomainMesh, nodal: &[f64], motions: &[Vec<f64>]) -> InternalForce {
     let given = |k: usize| mesh.dof[k] == SubdomainMesh::PRESCRIBED;
     let of_all = (0..mesh.dof.len()).filter(|&k| given(k));
-    let mut out = Held {
+    let mut out = InternalForce {
         force: of_all.map(|k| (k, 0.0)).collect(),
         terms: 0.0,
         energies: vec![0.0; motions.len()],
@@ -43,7 +43,7 @@ pub fn force_at_given(mesh: &SubdomainMesh, nodal: &[f64], motions: &[Vec<f64>])
     if out.force.is_empty() {
         return out;
     }
-    let Held {
+    let InternalForce {
         force,
         terms,
         energies,
@@ -77,8 +77,8 @@ fn each_element(
 ) {
     let c = mesh.components();
     match &mesh.elements {
-        Elements::Grid(grid) => each_of_grid(mesh, grid, wanted, add),
-        Elements::Cells(cells) => {
+        SubdomainElements::Grid(grid) => each_of_grid(mesh, grid, wanted, add),
+        SubdomainElements::Cells(cells) => {
             let dofs = |nodes: &[u32]| -> Vec<usize> {
                 let of_node = |&k: &u32| (0..c).map(move |i| c * k as usize + i);
                 nodes.iter().flat_map(of_node).collect()
@@ -97,7 +97,7 @@ fn each_of_grid(
     wanted: impl Fn(usize) -> bool,
     mut add: impl FnMut(&[usize], &[f64], f64),
 ) {
-    let (cells, c) = (Cells::new(mesh, grid), mesh.components());
+    let (cells, c) = (CellStiffness::new(mesh, grid), mesh.components());
     let n = grid.corners() * c;
     for (e, place) in grid.element_places().enumerate() {
         let nodes = grid.element_nodes(place);

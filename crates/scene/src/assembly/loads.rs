@@ -1,6 +1,6 @@
 //! Nodal loads of one subdomain: ∫ f N_a, and forces on its sides.
 
-use super::{Elements, Grid, SubdomainMesh};
+use super::{Grid, SubdomainElements, SubdomainMesh};
 use elements::cell::{self, Element, Side};
 use elements::q1::Quadrature;
 use elements::{element, q1};
@@ -13,8 +13,8 @@ where
     F: FnMut(usize, [f64; 3]) -> [f64; 3],
 {
     match &mesh.elements {
-        Elements::Grid(grid) => load_on_grid(mesh, grid, quadrature, f),
-        Elements::Cells(cells) => load_on_cells(mesh, cells, f),
+        SubdomainElements::Grid(grid) => load_on_grid(mesh, grid, quadrature, f),
+        SubdomainElements::Cells(cells) => load_on_cells(mesh, cells, f),
     }
 }
 
@@ -136,8 +136,10 @@ where
     F: FnMut([f64; 3], [f64; 3]) -> [f64; 3],
 {
     match (part, &mesh.elements) {
-        (SidePart::OfGrid(side), Elements::Grid(grid)) => add_on_grid(mesh, grid, *side, f, out),
-        (SidePart::Faces(faces), Elements::Cells(cells)) => {
+        (SidePart::OfGrid(side), SubdomainElements::Grid(grid)) => {
+            add_on_grid(mesh, grid, *side, f, out)
+        }
+        (SidePart::Faces(faces), SubdomainElements::Cells(cells)) => {
             add_on_faces(mesh, cells, faces, f, out)
         }
         _ => panic!("a side of another kind of mesh"),

@@ -8,14 +8,14 @@ mod internal_force;
 mod loads;
 mod norms;
 pub mod recovery;
-pub(crate) mod slack;
 mod sparse;
 mod subdomain;
+pub(crate) mod zero_energy;
 
 pub(crate) use assemble::{free_load, given_columns, matrix};
 pub(crate) use energy::given_energy;
-pub use internal_force::{force_at_given, internal_force, Held};
+pub use internal_force::{force_at_given, internal_force, InternalForce};
 pub(crate) use loads::{add_side_load, load_vector, SidePart};
 pub(crate) use norms::error_squares;
 pub use norms::ErrorNorms;
-pub use subdomain::{Elements, Grid, SubdomainMesh};
+pub use subdomain::{Grid, SubdomainElements, SubdomainMesh};

@@ -1,6 +1,6 @@
 //! Distance between a finite element function and an exact solution.
 
-use super::{Elements, Grid, SubdomainMesh};
+use super::{Grid, SubdomainElements, SubdomainMesh};
 use elements::{cell, element};
 use mesh::Cells;
 
@@ -33,8 +33,8 @@ where
     F: FnMut([f64; 3]) -> ([f64; 3], [[f64; 3]; 3]),
 {
     match &mesh.elements {
-        Elements::Grid(grid) => on_grid(mesh, grid, nodal, exact),
-        Elements::Cells(cells) => on_cells(mesh, cells, nodal, exact),
+        SubdomainElements::Grid(grid) => on_grid(mesh, grid, nodal, exact),
+        SubdomainElements::Cells(cells) => on_cells(mesh, cells, nodal, exact),
     }
 }
 

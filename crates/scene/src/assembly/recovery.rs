@@ -4,7 +4,7 @@
 //! mean of its cells, weighted by their volumes. On meshes of second order the mean converges with the square of the
 //! size of cells, one order faster than the values inside cells of first order do.
 
-use super::{Elements, Grid, SubdomainMesh};
+use super::{Grid, SubdomainElements, SubdomainMesh};
 use bytemuck::{Pod, Zeroable};
 use elements::cell::{centre_stress, CellStress, Element};
 use elements::element::{self, NodeStress};
@@ -31,7 +31,7 @@ pub fn for_each_cell(
         let (material, rule) = (mesh.material(e), mesh.integration(e));
         let volume = element::volume(kind, mesh.dim, &points);
         match &mesh.elements {
-            Elements::Grid(grid) if mesh.form.element == Element::P1 => {
+            SubdomainElements::Grid(grid) if mesh.form.element == Element::P1 => {
                 // Simplices inside the cell have constant stress; their mean stands for all corners.
                 at.fill(whole(&of_grid(mesh, grid, e, nodal)));
             }
@@ -59,7 +59,7 @@ pub fn squares(
         first += nodes.len();
         let (dim, material, rule) = (mesh.dim, mesh.material(e), mesh.integration(e));
         let here = match &mesh.elements {
-            Elements::Grid(grid) if mesh.form.element == Element::P1 => {
+            SubdomainElements::Grid(grid) if mesh.form.element == Element::P1 => {
                 let own = whole(&of_grid(mesh, grid, e, nodal));
                 element::recovered_squares_of(kind, dim, &points, &material, &own, &at)
             }
@@ -74,11 +74,11 @@ pub fn squares(
 pub fn cell_stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
     let mut out = Vec::with_capacity(mesh.n_elements());
     match &mesh.elements {
-        Elements::Grid(grid) => {
+        SubdomainElements::Grid(grid) => {
             out.extend((0..mesh.n_elements()).map(|e| of_grid(mesh, grid, e, nodal)))
         }
-        Elements::Cells(_) => for_each_cell(mesh, nodal, |_, _, at| {
-            let mut sum = Sum::default();
+        SubdomainElements::Cells(_) => for_each_cell(mesh, nodal, |_, _, at| {
+            let mut sum = NodalStressSum::default();
             at.iter().for_each(|node| sum.add(1.0, node));
             let NodeStress { strain, stress } = sum.mean();
             out.push(CellStress {
@@ -93,14 +93,14 @@ pub fn cell_stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
 /// A weighted sum of strains and stresses at a node.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
-pub struct Sum {
+pub struct NodalStressSum {
     /// The sum, strain before stress.
     pub values: [f64; 12],
     /// The sum of the weights.
     pub weight: f64,
 }
 
-impl Sum {
+impl NodalStressSum {
     /// Adds the value of a cell.
     pub fn add(&mut self, weight: f64, node: &NodeStress) {
         let values = node.strain.iter().chain(&node.stress);
@@ -112,7 +112,7 @@ impl Sum {
     }
 
     /// Adds another sum.
-    pub fn merge(&mut self, other: &Sum) {
+    pub fn merge(&mut self, other: &NodalStressSum) {
         self.values
             .iter_mut()
             .zip(&other.values)

@@ -7,7 +7,7 @@ use elements::element;
 use mesh::Cells;
 
 /// K on all degrees of freedom of a mesh of cells, by blocks of C × C.
-struct Blocks {
+struct BlockSparse {
     /// The nodes that share a cell with each node, itself included, increasing.
     beside: Lists,
     /// Where the blocks of each node begin, in blocks.
@@ -16,8 +16,8 @@ struct Blocks {
     values: Vec<f64>,
 }
 
-impl Blocks {
-    fn new(mesh: &SubdomainMesh, cells: &Cells) -> Blocks {
+impl BlockSparse {
+    fn new(mesh: &SubdomainMesh, cells: &Cells) -> BlockSparse {
         let c = mesh.components();
         let beside = neighbours(cells, mesh.points.len());
         let mut first = vec![0; beside.len()];
@@ -49,7 +49,7 @@ impl Blocks {
             let at = (first[node] + own) * c * c;
             (0..c).for_each(|i| values[at + i * c + i] += spring);
         }
-        Blocks {
+        BlockSparse {
             beside,
             first,
             values,
@@ -119,7 +119,7 @@ pub fn some_matrices(
 
 /// As [`matrix`](super::matrix()), for cells of any kind.
 pub fn matrix(mesh: &SubdomainMesh, cells: &Cells) -> Csr {
-    let (c, blocks) = (mesh.components(), Blocks::new(mesh, cells));
+    let (c, blocks) = (mesh.components(), BlockSparse::new(mesh, cells));
     let mut k = Csr {
         row_ptr: Vec::with_capacity(mesh.n_free() + 1),
         col: Vec::with_capacity(blocks.values.len()),
@@ -148,7 +148,7 @@ pub fn given_columns(mesh: &SubdomainMesh, cells: &Cells) -> Csr {
         val: Vec::new(),
     };
     let blocks = if mesh.prescribed.iter().any(|u| *u != 0.0) {
-        Some(Blocks::new(mesh, cells))
+        Some(BlockSparse::new(mesh, cells))
     } else {
         None
     };

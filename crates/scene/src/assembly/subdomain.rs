@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 /// The elements of a subdomain.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Elements {
+pub enum SubdomainElements {
     /// A grid of quadrilaterals or hexahedra.
     Grid(Grid),
     /// Cells of any kind.
@@ -83,7 +83,7 @@ pub struct SubdomainMesh {
     /// The equation and its finite elements.
     pub form: Form,
     /// The elements; nodes are places in `points`.
-    pub elements: Elements,
+    pub elements: SubdomainElements,
     /// Position of every node.
     pub points: Vec<[f64; 3]>,
     /// Local dof of every degree of freedom; [`SubdomainMesh::PRESCRIBED`] where the value is given. Length C × nodes.
@@ -112,16 +112,16 @@ impl SubdomainMesh {
     /// The grid of elements, if they form one.
     pub fn grid(&self) -> Option<&Grid> {
         match &self.elements {
-            Elements::Grid(grid) => Some(grid),
-            Elements::Cells(_) => None,
+            SubdomainElements::Grid(grid) => Some(grid),
+            SubdomainElements::Cells(_) => None,
         }
     }
 
     /// Number of elements.
     pub fn n_elements(&self) -> usize {
         match &self.elements {
-            Elements::Grid(grid) => grid.n_elements(),
-            Elements::Cells(cells) => cells.len(),
+            SubdomainElements::Grid(grid) => grid.n_elements(),
+            SubdomainElements::Cells(cells) => cells.len(),
         }
     }
 
@@ -185,8 +185,8 @@ impl SubdomainMesh {
         // Corners in the order of a quadrilateral (counter-clockwise) or a hexahedron.
         const ORDER: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
         match &self.elements {
-            Elements::Cells(cells) => Cow::Borrowed(cells),
-            Elements::Grid(grid) => {
+            SubdomainElements::Cells(cells) => Cow::Borrowed(cells),
+            SubdomainElements::Grid(grid) => {
                 let kind = [CellKind::Quad4, CellKind::Hex8][grid.dim() - 2];
                 let mut cells = Cells::default();
                 for place in grid.element_places() {

@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use super::numbers::Numbers;
+use super::numbers::DeckNumbering;
 use crate::deck::element::deck_element;
 use crate::model::body::{BodySpec, Cut, Force, Load, SurfaceLoad};
 use crate::model::expr::Expr;
 use crate::model::field::Field;
 use crate::model::joints::EquationSpec;
 use base::{Error, Result};
-use deck::{BodyLoadKind, Deck, Place, Pressure};
+use deck::{BodyLoadKind, Deck, DeckLine, Pressure};
 use elements::element::Integration;
 use elements::q1::Quadrature;
 use mesh::{CellMesh, Extractor, Mesh, SideGroup};
@@ -22,7 +22,7 @@ const ALONG: f64 = 1e-12;
 pub(super) type Extracted = std::result::Result<Arc<CellMesh>, String>;
 
 /// The meshes of the bodies of a deck. All steps share them.
-pub(super) fn meshes(deck: &Deck, numbers: &Numbers) -> Vec<Extracted> {
+pub(super) fn meshes(deck: &Deck, numbers: &DeckNumbering) -> Vec<Extracted> {
     let mut file = Extractor::new(&deck.mesh, deck.dim());
     let mesh = |part: &Vec<u32>| match file.extract(part, 1.0) {
         Ok(mesh) => Ok(Arc::new(mesh)),
@@ -35,7 +35,7 @@ pub(super) fn meshes(deck: &Deck, numbers: &Numbers) -> Vec<Extracted> {
 /// along oblique axes as equations.
 pub(super) fn of(
     deck: &Deck,
-    numbers: &Numbers,
+    numbers: &DeckNumbering,
     (meshes, in_full): (&[Extracted], bool),
     step: usize,
 ) -> Result<(Vec<BodySpec>, Vec<EquationSpec>)> {
@@ -62,7 +62,7 @@ pub(super) fn of(
 }
 
 /// Names bodies by the element set of their section, or by numbers where that is not unique.
-fn name(deck: &Deck, numbers: &Numbers, bodies: &mut [BodySpec]) {
+fn name(deck: &Deck, numbers: &DeckNumbering, bodies: &mut [BodySpec]) {
     let section = |part: &[u32]| {
         let first = deck.cell_section[part[0] as usize];
         let one = part.iter().all(|&c| deck.cell_section[c as usize] == first);
@@ -176,13 +176,13 @@ fn pressures(
 fn volume_load<'d>(
     deck: &'d Deck,
     part: &[u32],
-    of_cell: &dyn Fn(u32) -> (&'d deck::Section, &'d deck::Material),
+    of_cell: &dyn Fn(u32) -> (&'d deck::Section, &'d deck::DeckMaterial),
     thickness: &[f64],
     step: usize,
 ) -> Result<Load> {
     let dim = deck.dim();
     let mut constant = vec![vec![0.0; part.len()]; dim];
-    let mut turning: Option<(Vec<String>, Place)> = None;
+    let mut turning: Option<(Vec<String>, DeckLine)> = None;
     for load in &deck.steps[step].body_loads {
         let own = common(part, &load.cells);
         let mass = |inside: usize| {
@@ -290,7 +290,7 @@ fn centrifugal(strength: f64, point: [f64; 3], d: [f64; 3]) -> Vec<String> {
 /// Given displacements: values of degrees of freedom, or equations along oblique axes.
 fn supports(
     deck: &Deck,
-    numbers: &Numbers,
+    numbers: &DeckNumbering,
     step: usize,
     bodies: &mut [BodySpec],
 ) -> Result<Vec<EquationSpec>> {
@@ -340,7 +340,12 @@ fn along(axis: [f64; 3]) -> Option<(usize, f64)> {
 }
 
 /// Forces at nodes.
-fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) -> Result<()> {
+fn forces(
+    deck: &Deck,
+    numbers: &DeckNumbering,
+    step: usize,
+    bodies: &mut [BodySpec],
+) -> Result<()> {
     for force in &deck.steps[step].forces {
         let at = (force.node, force.dof);
         let Some(parts) = along_coordinates(deck, numbers, at, force.value) else {
@@ -363,7 +368,7 @@ fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) 
 /// `None` for a node that no element has.
 pub(super) fn along_coordinates(
     deck: &Deck,
-    numbers: &Numbers,
+    numbers: &DeckNumbering,
     (node, dof): (u32, u8),
     value: f64,
 ) -> Option<impl Iterator<Item = (usize, usize, f64)>> {

@@ -1,6 +1,6 @@
 //! Which of our elements an element of a deck is.
 
-use deck::{ElementType, Model};
+use deck::{ElementModel, ElementType};
 use elements::cell::Plane;
 use elements::element::Integration;
 use elements::kind::CellKind;
@@ -17,10 +17,10 @@ pub fn deck_element(element: ElementType) -> (Integration, Option<Plane>) {
         (deck::Integration::Incompatible, _) => Integration::Incompatible,
     };
     let plane = match element.model() {
-        Model::Solid => None,
-        Model::PlaneStrain => Some(Plane::Strain),
-        Model::PlaneStress => Some(Plane::Stress),
-        Model::Axisymmetric => Some(Plane::Axial),
+        ElementModel::Solid => None,
+        ElementModel::PlaneStrain => Some(Plane::Strain),
+        ElementModel::PlaneStress => Some(Plane::Stress),
+        ElementModel::Axisymmetric => Some(Plane::Axial),
     };
     (integration, plane)
 }

@@ -1,8 +1,8 @@
 //! Joints between the bodies of a deck: *TIE, *CONTACT PAIR, *EQUATION.
 
 use super::bodies::along_coordinates;
-use super::numbers::Numbers;
-use crate::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
+use super::numbers::DeckNumbering;
+use crate::model::joints::{ContactSpec, EquationSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use base::{Location, Result};
 use deck::{Adjust, ContactPair, Deck, Overclosure, SurfaceName, Tie};
@@ -45,14 +45,14 @@ pub(super) fn distinguish(deck: &mut Deck) {
 }
 
 /// The two surfaces of a tie or a contact pair.
-fn surfaces(deck: &Deck, slave: &SurfaceName, master: &SurfaceName) -> Pair {
+fn surfaces(deck: &Deck, slave: &SurfaceName, master: &SurfaceName) -> PairSelector {
     let [a, b] = [slave, master].map(|s| deck.mesh.groups[s.group as usize].name.clone());
-    Pair::Surfaces(a, b)
+    PairSelector::Surfaces(a, b)
 }
 
 /// The ties, among them the contact pairs that tie.
 pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
-    let tie = |pair: Pair, tolerance: Option<f64>, location: Location| TieSpec {
+    let tie = |pair: PairSelector, tolerance: Option<f64>, location: Location| TieSpec {
         pair,
         sides: None,
         extent: tolerance.map_or(Extent::All, singly),
@@ -80,7 +80,7 @@ pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
 /// multipliers.
 pub(super) fn contacts(
     deck: &Deck,
-    numbers: &Numbers,
+    numbers: &DeckNumbering,
     exchanged: &[Option<f64>],
 ) -> Result<Vec<ContactSpec>> {
     let mut out = Vec::new();
@@ -123,7 +123,7 @@ pub(super) fn contacts(
 /// The nodes of the slave that a contact pair moves onto its master: those of a set.
 fn adjusted(
     deck: &Deck,
-    numbers: &Numbers,
+    numbers: &DeckNumbering,
     pair: &ContactPair,
     set: &[u32],
 ) -> Result<Vec<BodyNode>> {
@@ -148,7 +148,7 @@ fn adjusted(
 }
 
 /// The equations between displacements.
-pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSpec>> {
+pub(super) fn equations(deck: &Deck, numbers: &DeckNumbering) -> Result<Vec<EquationSpec>> {
     let mut out = Vec::new();
     for equation in &deck.equations {
         let mut terms = Vec::new();
@@ -176,6 +176,6 @@ pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSp
     Ok(out)
 }
 
-fn at(deck: &Deck, place: deck::Place) -> Location {
+fn at(deck: &Deck, place: deck::DeckLine) -> Location {
     deck.files.location(place)
 }

@@ -18,12 +18,12 @@ use super::geometry::loose;
 use super::model::spec::{ByDefault, SceneSpec};
 use base::{Error, Result};
 use bodies::Extracted;
-use deck::{Deck, Model};
+use deck::{Deck, ElementModel};
 use elements::cell::{Cure, Plane};
 use elements::form::{Form, Physics};
 use fetifeti::problem::BodyNode;
 use mesh::bytes;
-use numbers::Numbers;
+use numbers::DeckNumbering;
 
 /// The part of a force on a ring that CalculiX prints: that on one of the sectors of 2° of which it makes the ring.
 const SECTOR: f64 = 1.0 / 180.0;
@@ -32,7 +32,7 @@ const SECTOR: f64 = 1.0 / 180.0;
 #[derive(Debug, Clone)]
 pub struct DeckScenes {
     deck: Deck,
-    numbers: Numbers,
+    numbers: DeckNumbering,
     meshes: Vec<Extracted>,
     /// Whether all elements are integrated in full, whatever their types.
     in_full: bool,
@@ -74,7 +74,7 @@ impl DeckScenes {
             )));
         }
         let turned = deck.turn_clockwise();
-        let numbers = Numbers::new(&deck);
+        let numbers = DeckNumbering::new(&deck);
         joints::distinguish(&mut deck);
         let mut changes = tied::adjust(&mut deck);
         let meshes = bodies::meshes(&deck, &numbers);
@@ -135,9 +135,9 @@ impl DeckScenes {
     pub fn scene(&self, title: &str, step: usize) -> Result<Scene> {
         let deck = &self.deck;
         let plane = match deck.model() {
-            Model::Solid | Model::PlaneStrain => Plane::Strain,
-            Model::PlaneStress => Plane::Stress,
-            Model::Axisymmetric => Plane::Axial,
+            ElementModel::Solid | ElementModel::PlaneStrain => Plane::Strain,
+            ElementModel::PlaneStress => Plane::Stress,
+            ElementModel::Axisymmetric => Plane::Axial,
         };
         if let Some(k) = deck.elements.iter().position(|e| e.model() != deck.model()) {
             return Err(Error::input(format!(
@@ -198,7 +198,7 @@ impl DeckScenes {
         step: usize,
         displacement: &dyn Fn(BodyNode) -> [f64; 3],
         force: &dyn Fn(BodyNode) -> [f64; 3],
-    ) -> Vec<Vec<deck::Table>> {
+    ) -> Vec<Vec<deck::DatTable>> {
         let numbers = &self.numbers;
         let all = |of: &dyn Fn(BodyNode) -> [f64; 3]| -> Vec<[f64; 3]> {
             let nodes = 0..self.deck.mesh.points.len() as u32;
@@ -207,7 +207,7 @@ impl DeckScenes {
                 .collect()
         };
         let mut forces = all(force);
-        if self.deck.model() == Model::Axisymmetric {
+        if self.deck.model() == ElementModel::Axisymmetric {
             forces.iter_mut().flatten().for_each(|f| *f *= SECTOR);
         }
         self.deck.tables(step, &all(displacement), &forces)

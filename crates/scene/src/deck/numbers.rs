@@ -6,15 +6,15 @@ use mesh::partition::Components;
 
 /// The bodies of a deck, in numbers.
 #[derive(Debug, Clone)]
-pub(super) struct Numbers {
+pub(super) struct DeckNumbering {
     /// The cells of each body, increasing.
     pub parts: Vec<Vec<u32>>,
     /// Body and node of each point.
     nodes: Vec<Option<BodyNode>>,
 }
 
-impl Numbers {
-    pub fn new(deck: &Deck) -> Numbers {
+impl DeckNumbering {
+    pub fn new(deck: &Deck) -> DeckNumbering {
         let mesh = &deck.mesh;
         let parts = Components::by_nodes(&mesh.cells).members();
         let mut body_of = vec![usize::MAX; mesh.points.len()];
@@ -37,7 +37,7 @@ impl Numbers {
             })
         };
         let nodes = body_of.into_iter().map(number).collect();
-        Numbers { parts, nodes }
+        DeckNumbering { parts, nodes }
     }
 
     /// Body and node of a point; `None` if no cell has it.

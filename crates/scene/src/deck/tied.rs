@@ -4,9 +4,9 @@
 use std::collections::HashMap;
 
 use base::linalg::vec3::{minus, norm};
-use deck::{Adjust, Deck, Overclosure, Place, SurfaceName};
-use elements::mortar::{self, Face, Feet, Side};
-use mesh::{Group, Members, MeshFile};
+use deck::{Adjust, Deck, DeckLine, Overclosure, SurfaceName};
+use elements::mortar::{self, Feet, MortarFace, MortarSide};
+use mesh::{Members, MeshFile, MeshGroup};
 
 /// Moves below this part of the coordinates are none.
 const NOTHING: f64 = 1e-12;
@@ -62,14 +62,14 @@ pub(super) fn adjust(deck: &mut Deck) -> Vec<String> {
 struct Joint<'d> {
     /// The slave and the master.
     names: [&'d SurfaceName; 2],
-    place: Place,
+    place: DeckLine,
     keyword: &'static str,
     /// The end of the sentence on nodes that it moves.
     hint: &'static str,
 }
 
 impl Joint<'_> {
-    fn master(&self, deck: &Deck) -> Side {
+    fn master(&self, deck: &Deck) -> MortarSide {
         let sides = sides_of(&deck.mesh.groups[self.names[1].group as usize]);
         side(&deck.mesh, deck.dim(), sides)
     }
@@ -140,7 +140,7 @@ fn count(nodes: usize) -> String {
 }
 
 /// The sides of cells of a surface.
-fn sides_of(group: &Group) -> &[(u32, u8)] {
+fn sides_of(group: &MeshGroup) -> &[(u32, u8)] {
     match &group.members {
         Members::Sides(sides) => sides,
         _ => &[],
@@ -163,7 +163,11 @@ fn nodes_of(mesh: &MeshFile, group: usize) -> Vec<u32> {
 }
 
 /// A side with some sides of cells as its faces.
-fn side<'m>(mesh: &MeshFile, dim: usize, sides: impl IntoIterator<Item = &'m (u32, u8)>) -> Side {
+fn side<'m>(
+    mesh: &MeshFile,
+    dim: usize,
+    sides: impl IntoIterator<Item = &'m (u32, u8)>,
+) -> MortarSide {
     let mut nodes: Vec<u32> = Vec::new();
     let mut place: HashMap<u32, u32> = HashMap::new();
     let mut faces = Vec::new();
@@ -175,11 +179,11 @@ fn side<'m>(mesh: &MeshFile, dim: usize, sides: impl IntoIterator<Item = &'m (u3
                 nodes.len() as u32 - 1
             })
         });
-        faces.push(Face {
+        faces.push(MortarFace {
             nodes: local.collect(),
             kind: mesh.cells.kind(cell as usize).sides()[usize::from(side)].kind,
         });
     }
     let points = nodes.iter().map(|&k| mesh.points[k as usize]).collect();
-    Side::new(dim, points, faces)
+    MortarSide::new(dim, points, faces)
 }

@@ -6,12 +6,12 @@
 use std::collections::{BTreeMap, HashSet};
 
 use super::bodies::Extracted;
-use super::numbers::Numbers;
+use super::numbers::DeckNumbering;
 use deck::Deck;
 use mesh::{defects, of_both_sides, Defect};
 
 /// A sentence for each kind of defect in the bodies of a deck.
-pub(super) fn notes(deck: &Deck, numbers: &Numbers, meshes: &[Extracted]) -> Vec<String> {
+pub(super) fn notes(deck: &Deck, numbers: &DeckNumbering, meshes: &[Extracted]) -> Vec<String> {
     let mut joined = vec![HashSet::new(); numbers.parts.len()];
     let terms = deck.equations.iter().flat_map(|e| &e.terms);
     for at in terms.filter_map(|term| numbers.node(term.node)) {

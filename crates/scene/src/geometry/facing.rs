@@ -1,6 +1,6 @@
 //! Node pairs on sides of bodies of any shape: sides that coincide, and sides that face each other.
 
-use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
+use super::interface::{BodyInterface, InterfaceShape, Link, SharedNode, TOLERANCE};
 use super::normals::{of_side, parameters};
 use crate::body::Body;
 use crate::model::body::BodySpec;
@@ -15,7 +15,7 @@ pub(crate) fn coinciding(
     bodies: &[Body],
     pair: [usize; 2],
     edge: &mut impl FnMut(usize) -> f64,
-) -> Vec<Interface> {
+) -> Vec<BodyInterface> {
     let [a, b] = pair.map(|k| &bodies[k]);
     let apart = (0..3).any(|d| {
         let slack = 1e-6 * (a.bounds[1][d] - a.bounds[0][d]).abs();
@@ -35,28 +35,28 @@ pub(crate) fn coinciding(
         let sb = *sb;
         let grid = PointGrid::new(of_b.iter().map(|p| p.1).enumerate(), 4.0 * near);
         let twin = |x: [f64; 3]| {
-            let close = |(_, y): &&Placed| (0..3).all(|d| (x[d] - y[d]).abs() <= near);
+            let close = |(_, y): &&LocatedNode| (0..3).all(|d| (x[d] - y[d]).abs() <= near);
             let mut around = grid.around(x, near).map(|k| &of_b[k]);
             around.find(close).map(|p| p.0)
         };
         for (sa, of_a) in &of_a {
             let sa = *sa;
-            let pair = |&(node, x): &Placed| Some([node, twin(x)?]);
+            let pair = |&(node, x): &LocatedNode| Some([node, twin(x)?]);
             let nodes = of_a.iter().filter_map(pair);
             let shared = share(&a.spec, sa, nodes.collect());
             let shape = if is_face([a, b], [sa, sb], &shared) {
-                Shape::Face
+                InterfaceShape::Face
             } else {
-                Shape::Corner
+                InterfaceShape::Corner
             };
-            if shape == Shape::Face {
+            if shape == InterfaceShape::Face {
                 seen.extend(shared.iter().map(|s| s.nodes));
             }
             found.push(([sa, sb], shape, shared));
         }
     }
     // Removes nodes of corners and edges that a face, or another corner, already has.
-    for (_, _, shared) in found.iter_mut().filter(|f| f.1 == Shape::Corner) {
+    for (_, _, shared) in found.iter_mut().filter(|f| f.1 == InterfaceShape::Corner) {
         shared.retain(|s| seen.insert(s.nodes));
     }
     let found = found
@@ -68,16 +68,16 @@ pub(crate) fn coinciding(
 }
 
 /// A node, and where it is.
-type Placed = (usize, [f64; 3]);
+type LocatedNode = (usize, [f64; 3]);
 
 /// The outer sides of a body that have nodes in the bounds of another one, with these nodes.
-fn sides_inside(body: &Body, other: &Body) -> Vec<(usize, Vec<Placed>)> {
+fn sides_inside(body: &Body, other: &Body) -> Vec<(usize, Vec<LocatedNode>)> {
     let [low, high] = other.bounds;
     let size = |b: &Body| norm(minus(b.bounds[1], b.bounds[0]));
     // Nodes coincide that are a fraction of an edge apart.
     let slack = 2.0 * TOLERANCE * size(body).min(size(other));
     let is_inside =
-        |(_, x): &Placed| (0..3).all(|d| x[d] >= low[d] - slack && x[d] <= high[d] + slack);
+        |(_, x): &LocatedNode| (0..3).all(|d| x[d] >= low[d] - slack && x[d] <= high[d] + slack);
     let inside = |side: usize| {
         let nodes = body.mesh().side_nodes(side).into_iter();
         let placed = nodes.map(|k| (k, body.spec.position(k)));
@@ -119,7 +119,7 @@ pub(crate) fn opposite(
     meshes: [&BoxMesh; 2],
     pair: [usize; 2],
     sides: [usize; 2],
-) -> Option<Interface> {
+) -> Option<BodyInterface> {
     let [a, b] = pair.map(|k| &bodies[k]);
     let lists = [(a, sides[0]), (b, sides[1])].map(|(body, side)| body.mesh().side_nodes(side));
     let counts = [(meshes[0], sides[0]), (meshes[1], sides[1])].map(|(mesh, side)| {
@@ -151,7 +151,7 @@ pub(crate) fn opposite(
     // Two sides of one body may have common nodes: these have nothing opposite.
     let pairs = pairs.filter(|nodes| pair[0] != pair[1] || nodes[0] != nodes[1]);
     let shared = share(&a.spec, sides[0], pairs.collect());
-    Some(interface(bodies, pair, sides, Shape::Face, shared))
+    Some(interface(bodies, pair, sides, InterfaceShape::Face, shared))
 }
 
 /// The interface of given nodes, with the mean of both bodies' normals and the distance along it.
@@ -159,9 +159,9 @@ pub(crate) fn interface(
     bodies: &[Body],
     pair: [usize; 2],
     sides: [usize; 2],
-    shape: Shape,
+    shape: InterfaceShape,
     shared: Vec<SharedNode>,
-) -> Interface {
+) -> BodyInterface {
     let [first, second] = [0, 1].map(|k| {
         let nodes: Vec<usize> = shared.iter().map(|s| s.nodes[k]).collect();
         of_side(&bodies[pair[k]].spec, sides[k], &nodes)
@@ -195,7 +195,7 @@ pub(crate) fn interface(
             }
         })
         .collect();
-    Interface {
+    BodyInterface {
         bodies: pair,
         shape,
         sides,

@@ -34,7 +34,7 @@ impl Link {
 
 /// The shape of the common part of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub enum InterfaceShape {
     /// A part of their sides: a stretch in the plane, an area in three dimensions.
     Face,
     /// A part of lower dimension: a corner point, or an edge of a solid.
@@ -55,11 +55,11 @@ pub struct SharedNode {
 
 /// Two bodies that touch, or have sides that face each other; or two sides of one body.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Interface {
+pub struct BodyInterface {
     /// The bodies, the lower number first; the same twice if the body touches itself.
     pub bodies: [usize; 2],
     /// The shape of the common part.
-    pub shape: Shape,
+    pub shape: InterfaceShape,
     /// The sides of the bodies that meet; meaningless at corners.
     pub sides: [usize; 2],
     /// The pairs of nodes, by increasing t.
@@ -87,13 +87,13 @@ pub struct Interface {
 }
 
 /// Whether more nodes are tied than in contact.
-pub(crate) fn mostly_tied(interfaces: &[Interface]) -> bool {
+pub(crate) fn mostly_tied(interfaces: &[BodyInterface]) -> bool {
     let links = || interfaces.iter().flat_map(|i| &i.shared).map(|s| s.link);
     let tied = links().filter(|l| *l == Link::Tied).count();
     tied > links().filter(Link::is_contact).count()
 }
 
-impl Interface {
+impl BodyInterface {
     /// Drops what it knows node by node. One bound stays where there are some: it says that there is contact.
     pub(crate) fn forget_nodes(&mut self) {
         (self.shared, self.unmatched) = (Vec::new(), Vec::new());
@@ -120,7 +120,7 @@ impl Interface {
     /// have no row.
     pub(crate) fn common(&self, bodies: &[Body]) -> Vec<usize> {
         let [a, b] = self.bodies;
-        if a != b || self.shape == Shape::Corner {
+        if a != b || self.shape == InterfaceShape::Corner {
             return Vec::new();
         }
         let mesh = bodies[a].mesh();

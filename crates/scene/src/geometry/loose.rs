@@ -7,13 +7,13 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::interface::Interface;
+use super::interface::BodyInterface;
 use super::mortar::surface;
 use crate::body::Body;
 use crate::rows::equations::Equation;
 use base::linalg::vec3::{minus, norm};
 use elements::form::Form;
-use elements::mortar::{self, Side, Tree};
+use elements::mortar::{self, MortarSide, Tree};
 use mesh::Mesh;
 
 /// Surfaces touch if their distance, or their overlap, is at most this fraction of their shortest edge: what `auto`
@@ -38,7 +38,7 @@ pub(crate) enum Language {
 /// A sentence for each pair of bodies that touch and that nothing joins.
 pub(crate) fn sentences(
     bodies: &[Body],
-    interfaces: &[Interface],
+    interfaces: &[BodyInterface],
     equations: &[Equation],
     form: &Form,
     language: Language,
@@ -75,7 +75,7 @@ pub(crate) fn sentences(
 /// The pairs of bodies that something joins.
 fn joined(
     bodies: &[Body],
-    interfaces: &[Interface],
+    interfaces: &[BodyInterface],
     equations: &[Equation],
 ) -> HashSet<[usize; 2]> {
     let mut out: HashSet<[usize; 2]> = interfaces.iter().map(|i| i.bodies).collect();
@@ -111,7 +111,7 @@ fn near(bodies: &[Body]) -> Vec<[usize; 2]> {
 /// The surface of a body.
 struct Skin {
     /// Its outer sides.
-    sides: Vec<(usize, Arc<Side>)>,
+    sides: Vec<(usize, Arc<MortarSide>)>,
     /// Its shortest edge, and how large its smallest face is at least.
     shortest: f64,
     least: f64,
@@ -122,7 +122,7 @@ struct Skin {
 impl Skin {
     fn new(body: &Body, form: &Form) -> Skin {
         let side = |s: usize| (s, surface(&body.spec, s, form.element).0);
-        let sides: Vec<(usize, Arc<Side>)> = body.mesh().outer_sides().map(side).collect();
+        let sides: Vec<(usize, Arc<MortarSide>)> = body.mesh().outer_sides().map(side).collect();
         let each = sides.iter().map(|(_, side)| side.shortest());
         let shortest = each.fold(f64::INFINITY, f64::min);
         Skin {

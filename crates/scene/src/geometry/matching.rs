@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use super::facing::{interface, share};
-use super::interface::{Interface, Shape};
+use super::interface::{BodyInterface, InterfaceShape};
 use super::mortar::interface as interface_of_mortar;
 use super::surface::Surface;
 use super::sweep::{are_disjoint, extent};
@@ -27,20 +27,20 @@ pub(crate) enum Mismatch {
 }
 
 /// Two bodies, a side of each, and the bits of the reach.
-type Sides = ([usize; 2], [usize; 2], u64);
+type MatchKey = ([usize; 2], [usize; 2], u64);
 
 /// The search for nodes that face each other. It keeps the surfaces that it builds and the interfaces that it finds: a
 /// body has several neighbours, and who finds contacts asks for the same pair as who makes interfaces of them.
-pub(crate) struct Matching<'a> {
+pub(crate) struct NodeMatching<'a> {
     bodies: &'a [Body],
     surfaces: HashMap<(usize, usize), Rc<Surface>>,
-    found: HashMap<Sides, Interface>,
-    mortar: HashMap<(Sides, usize), Option<Interface>>,
+    found: HashMap<MatchKey, BodyInterface>,
+    mortar: HashMap<(MatchKey, usize), Option<BodyInterface>>,
 }
 
-impl<'a> Matching<'a> {
-    pub fn new(bodies: &'a [Body]) -> Matching<'a> {
-        Matching {
+impl<'a> NodeMatching<'a> {
+    pub fn new(bodies: &'a [Body]) -> NodeMatching<'a> {
+        NodeMatching {
             bodies,
             surfaces: HashMap::new(),
             found: HashMap::new(),
@@ -64,7 +64,7 @@ impl<'a> Matching<'a> {
         pair: [usize; 2],
         sides: [usize; 2],
         reach: f64,
-    ) -> Result<&Interface, Mismatch> {
+    ) -> Result<&BodyInterface, Mismatch> {
         let key = (pair, sides, reach.to_bits());
         if !self.found.contains_key(&key) {
             let surfaces = [0, 1].map(|k| self.surface(pair[k], sides[k]));
@@ -88,7 +88,7 @@ impl<'a> Matching<'a> {
         (pair, sides): ([usize; 2], [usize; 2]),
         which: usize,
         reach: f64,
-    ) -> &mut Option<Interface> {
+    ) -> &mut Option<BodyInterface> {
         let key = ((pair, sides, reach.to_bits()), which);
         let find = || interface_of_mortar(self.bodies, form, pair, sides, which, reach);
         self.mortar.entry(key).or_insert_with(find)
@@ -108,7 +108,7 @@ fn join(
     sides: [usize; 2],
     [a, b]: [&Surface; 2],
     reach: f64,
-) -> Result<Interface, Mismatch> {
+) -> Result<BodyInterface, Mismatch> {
     let specs = pair.map(|k| &bodies[k].spec);
     // Far apart the nearest nodes say nothing about the faces opposite.
     let near = |surface: &Surface, i: usize| reach.min(FAR * surface.edges[i]);
@@ -150,7 +150,7 @@ fn join(
         false if pairs.is_empty() => Err(Mismatch::Apart(apart(bodies, pair, sides))),
         false => {
             let shared = share(specs[0], sides[0], pairs);
-            Ok(interface(bodies, pair, sides, Shape::Face, shared))
+            Ok(interface(bodies, pair, sides, InterfaceShape::Face, shared))
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::interface::{Interface, Shape};
+use super::interface::{BodyInterface, InterfaceShape};
 use super::mortar_sides::{Mortar, Surfaces};
 use super::nearest::Nearest;
 use super::normals::of_side;
@@ -16,7 +16,7 @@ use base::linalg::vec3::dot;
 use elements::cell::Element;
 use elements::form::Form;
 use elements::kind::CellKind;
-use elements::mortar::{self, Face, Side};
+use elements::mortar::{self, MortarFace, MortarSide};
 
 /// The interface of two sides whose nodes do not match; body number `multipliers` of the pair (0 or 1) carries the
 /// multipliers. The sides may be `reach` apart, or, where that is infinite, a few edges. `None` if they do not face
@@ -28,7 +28,7 @@ pub(crate) fn interface(
     sides: [usize; 2],
     multipliers: usize,
     reach: f64,
-) -> Option<Interface> {
+) -> Option<BodyInterface> {
     let order = [multipliers, 1 - multipliers];
     let specs = order.map(|k| &bodies[pair[k]].spec);
     let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]], form.element));
@@ -48,7 +48,7 @@ pub(super) fn of_surfaces(
     (pair, sides): ([usize; 2], [usize; 2]),
     multipliers: usize,
     (surfaces, out): (Surfaces, Option<Vec<[f64; 3]>>),
-) -> Option<Interface> {
+) -> Option<BodyInterface> {
     let order = [multipliers, 1 - multipliers];
     let specs = order.map(|k| &bodies[pair[k]].spec);
     let rows = surfaces.rows(form, &|_| false);
@@ -77,9 +77,9 @@ pub(super) fn of_surfaces(
         shared.iter_mut().for_each(|s| s.nodes.reverse());
     }
     let sign = if multipliers == 0 { 1.0 } else { -1.0 };
-    Some(Interface {
+    Some(BodyInterface {
         bodies: pair,
-        shape: Shape::Face,
+        shape: InterfaceShape::Face,
         sides,
         shared,
         unmatched: Vec::new(),
@@ -98,8 +98,8 @@ pub(super) fn of_surfaces(
 }
 
 /// Whether contact between sides whose nodes match takes mortar rows all the same.
-pub(crate) fn is_for_contact(bodies: &[Body], interface: &Interface) -> bool {
-    interface.shape == Shape::Face
+pub(crate) fn is_for_contact(bodies: &[Body], interface: &BodyInterface) -> bool {
+    interface.shape == InterfaceShape::Face
         && [0, 1].into_iter().any(|k| {
             let nodes = interface.shared.iter().map(|s| s.nodes[k]);
             lacks_signs(&bodies[interface.bodies[k]], interface.sides[k], nodes)
@@ -122,19 +122,26 @@ pub(crate) fn lacks_signs(body: &Body, side: usize, nodes: impl Iterator<Item = 
 }
 
 /// A side of a body with its faces as the elements see them, and the node of the body for each of its nodes.
-pub(crate) fn surface(spec: &BodySpec, side: usize, element: Element) -> (Arc<Side>, Vec<usize>) {
+pub(crate) fn surface(
+    spec: &BodySpec,
+    side: usize,
+    element: Element,
+) -> (Arc<MortarSide>, Vec<usize>) {
     let nodes = spec.mesh.side_nodes(side);
     let place: HashMap<usize, u32> = nodes.iter().copied().zip(0..).collect();
     let points = nodes.iter().map(|&k| spec.position(k)).collect();
     let faces = spec.faces(side).flat_map(|face| {
         let pieces = oriented(spec, side, &face, element).into_iter();
-        pieces.map(|(kind, list)| Face {
+        pieces.map(|(kind, list)| MortarFace {
             kind,
             nodes: list.iter().map(|k| place[k]).collect(),
         })
     });
     let faces = faces.collect();
-    (Arc::new(Side::new(spec.mesh.dim(), points, faces)), nodes)
+    (
+        Arc::new(MortarSide::new(spec.mesh.dim(), points, faces)),
+        nodes,
+    )
 }
 
 /// The faces of elements that a face consists of: their kinds and their nodes, in the order in which the normal points

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::model::body::BodySpec;
 use elements::form::Form;
-use elements::mortar::{self, Row, Sample, Side};
+use elements::mortar::{self, DualMortarRow, MortarSample, MortarSide};
 
 /// The coupling of two sides whose nodes do not match.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +21,10 @@ pub struct Mortar {
 /// Two sides that face each other, the one with the multipliers first. The other one may be a rigid surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Surfaces {
-    sides: [Arc<Side>; 2],
+    sides: [Arc<MortarSide>; 2],
     /// The node of its body for each node of a side.
     pub(super) nodes: [Vec<usize>; 2],
-    samples: Vec<Sample>,
+    samples: Vec<MortarSample>,
     /// The rows of nodes that are held one by one, in the place of integrals.
     single: Option<Vec<BodyRow>>,
     /// Nodes that two sides of one body have in common, as at the tip of a crack: they carry no multiplier, since there
@@ -34,7 +34,7 @@ pub(crate) struct Surfaces {
 
 impl Surfaces {
     /// Sides with the node of the body for each of their nodes. They may be `reach` apart.
-    pub fn new([own, other]: [(Arc<Side>, Vec<usize>); 2], reach: f64) -> Surfaces {
+    pub fn new([own, other]: [(Arc<MortarSide>, Vec<usize>); 2], reach: f64) -> Surfaces {
         Surfaces {
             samples: mortar::samples(&own.0, &other.0, reach),
             sides: [own.0, other.0],
@@ -53,7 +53,10 @@ impl Surfaces {
     }
 
     /// Sides of which nodes of the first are held one by one, by these rows.
-    pub fn single([own, other]: [(Arc<Side>, Vec<usize>); 2], rows: Vec<BodyRow>) -> Surfaces {
+    pub fn single(
+        [own, other]: [(Arc<MortarSide>, Vec<usize>); 2],
+        rows: Vec<BodyRow>,
+    ) -> Surfaces {
         Surfaces {
             samples: Vec::new(),
             sides: [own.0, other.0],
@@ -101,7 +104,7 @@ impl Surfaces {
         };
         let [side, other] = [&self.sides[0], &self.sides[1]];
         let rows = mortar::rows(side, other, &self.samples, &left_out, &around);
-        let in_bodies = |row: Row| BodyRow {
+        let in_bodies = |row: DualMortarRow| BodyRow {
             node: self.nodes[0][row.node as usize],
             own: own(row.own),
             other: theirs(row.other),

@@ -1,7 +1,7 @@
 //! Sides that overlap to begin with: a sentence where it is much of a face, an error where it is so much that they
 //! cannot be meant to face each other.
 
-use super::interface::{Interface, Shape};
+use super::interface::{BodyInterface, InterfaceShape};
 use super::mortar::surface;
 use crate::body::Body;
 use crate::rows::obstacles::Obstacle;
@@ -21,7 +21,7 @@ const LIST: usize = 8;
 /// as touching does not overlap.
 pub(crate) fn sentences(
     bodies: &[Body],
-    interfaces: &[Interface],
+    interfaces: &[BodyInterface],
     obstacles: &[Obstacle],
     form: &Form,
 ) -> Vec<String> {
@@ -29,7 +29,9 @@ pub(crate) fn sentences(
         let (side, _) = surface(&bodies[body].spec, side, form.element);
         side.shortest()
     };
-    let faces = interfaces.iter().filter(|i| i.shape == Shape::Face);
+    let faces = interfaces
+        .iter()
+        .filter(|i| i.shape == InterfaceShape::Face);
     let of_faces = faces.filter_map(|interface| {
         let depth = deepest(interface.distances.iter().copied())?;
         let [a, b] = [0, 1].map(|k| (interface.bodies[k], interface.sides[k]));
@@ -78,7 +80,7 @@ fn beginning(names: &[String; 2], depth: f64, edge: f64, contact: bool) -> Strin
 }
 
 /// The sides of an interface, by name.
-fn names(bodies: &[Body], interface: &Interface) -> [String; 2] {
+fn names(bodies: &[Body], interface: &BodyInterface) -> [String; 2] {
     [0, 1].map(|k| {
         let spec = &bodies[interface.bodies[k]].spec;
         let side = spec.mesh.side_name(interface.sides[k]);
@@ -87,7 +89,7 @@ fn names(bodies: &[Body], interface: &Interface) -> [String; 2] {
 }
 
 /// The end of a sentence if the sides of an interface overlap by more.
-pub(crate) fn too_large(bodies: &[Body], interface: &Interface) -> Option<String> {
+pub(crate) fn too_large(bodies: &[Body], interface: &BodyInterface) -> Option<String> {
     let nodes = interface.distances.iter().zip(&interface.normals);
     let (distance, normal) = nodes.min_by(|a, b| a.0.total_cmp(b.0))?;
     let thickness = |b: &usize| thickness(&bodies[*b], *normal);

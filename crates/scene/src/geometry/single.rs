@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::interface::Interface;
+use super::interface::BodyInterface;
 use super::mortar::{of_surfaces, surface};
 use super::mortar_sides::{BodyRow, Surfaces};
 use super::surface::OPPOSITE;
@@ -17,7 +17,7 @@ use elements::mortar::{self, Feet};
 
 /// The nodes of the side with the multipliers, as a tolerance divides them.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Reached {
+pub(crate) struct ReachedNodes {
     /// The nodes within the tolerance, with their rows, by increasing node.
     rows: Vec<BodyRow>,
     /// The normals of the faces opposite.
@@ -29,12 +29,18 @@ pub(crate) struct Reached {
 }
 
 /// Two bodies, and a side of each.
-type Sides = ([usize; 2], [usize; 2]);
+type TwoSides = ([usize; 2], [usize; 2]);
 
-impl Reached {
+impl ReachedNodes {
     /// The nodes of side `sides[which]` that lie within `tolerance` of the other one, for a tie.
-    pub fn new(bodies: &[Body], form: &Form, both: Sides, which: usize, tolerance: f64) -> Reached {
-        Reached::find(bodies, form, both, which, (tolerance, false))
+    pub fn new(
+        bodies: &[Body],
+        form: &Form,
+        both: TwoSides,
+        which: usize,
+        tolerance: f64,
+    ) -> ReachedNodes {
+        ReachedNodes::find(bodies, form, both, which, (tolerance, false))
     }
 
     /// The nodes of side `sides[which]` that lie opposite the other one at `reach` at most, for a contact: they face
@@ -42,20 +48,20 @@ impl Reached {
     pub fn touching(
         bodies: &[Body],
         form: &Form,
-        both: Sides,
+        both: TwoSides,
         which: usize,
         reach: f64,
-    ) -> Reached {
-        Reached::find(bodies, form, both, which, (reach, true))
+    ) -> ReachedNodes {
+        ReachedNodes::find(bodies, form, both, which, (reach, true))
     }
 
     fn find(
         bodies: &[Body],
         form: &Form,
-        (pair, sides): Sides,
+        (pair, sides): TwoSides,
         which: usize,
         (tolerance, contact): (f64, bool),
-    ) -> Reached {
+    ) -> ReachedNodes {
         let order = [which, 1 - which];
         let specs = order.map(|k| &bodies[pair[k]].spec);
         let [(own, nodes), (other, theirs)] =
@@ -70,7 +76,7 @@ impl Reached {
         let normals = own.normals();
         let mut areas = areas(&bodies[pair[which]], form, sides[which], &nodes);
         let has_face = |i: usize| normals[i] != [0.0; 3];
-        let mut out = Reached {
+        let mut out = ReachedNodes {
             rows: Vec::new(),
             normals: Vec::new(),
             far: Vec::new(),
@@ -118,9 +124,9 @@ impl Reached {
         &self,
         bodies: &[Body],
         form: &Form,
-        (pair, sides): Sides,
+        (pair, sides): TwoSides,
         which: usize,
-    ) -> Option<Interface> {
+    ) -> Option<BodyInterface> {
         let order = [which, 1 - which];
         let both = order.map(|k| surface(&bodies[pair[k]].spec, sides[k], form.element));
         let surfaces = Surfaces::single(both, self.rows.clone());

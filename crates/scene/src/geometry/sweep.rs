@@ -9,7 +9,7 @@ use base::linalg::vec3::{dot, minus, norm};
 use elements::mortar::Tree;
 
 /// A box along the axes: its lowest and its highest corner.
-type Bounds = [[f64; 3]; 2];
+type SurfaceBox = [[f64; 3]; 2];
 
 /// Normals of a flat surface differ by less.
 pub(super) const SAME: f64 = 1e-6;
@@ -17,7 +17,7 @@ pub(super) const SAME: f64 = 1e-6;
 /// The pairs of bodies whose bounds are at most `slack` apart along every axis, where `slack` is that of one of them.
 /// Each pair is in increasing order, and so are the pairs. A tree of boxes finds them in n log n steps.
 pub(crate) fn near(bodies: &[Body], slack: impl Fn(usize) -> f64) -> Vec<[usize; 2]> {
-    let boxes: Vec<Bounds> = bodies.iter().map(|b| b.bounds).collect();
+    let boxes: Vec<SurfaceBox> = bodies.iter().map(|b| b.bounds).collect();
     let tree = Tree::new(boxes.clone());
     let mut out = Vec::new();
     for (a, [low, high]) in boxes.iter().enumerate() {
@@ -61,12 +61,15 @@ pub(crate) fn may_face(
     second: &[Rc<Surface>],
     reach: f64,
 ) -> Vec<[usize; 2]> {
-    let first: Vec<Outline> = first.iter().map(|s| Outline::new(s, reach)).collect();
-    let second = second.iter().map(|s| Outline::new(s, reach));
-    let mut second: Vec<(Outline, usize)> = second.zip(0..).collect();
-    let left = |o: &Outline| o.bounds[0][0];
+    let first: Vec<SurfaceOutline> = first
+        .iter()
+        .map(|s| SurfaceOutline::new(s, reach))
+        .collect();
+    let second = second.iter().map(|s| SurfaceOutline::new(s, reach));
+    let mut second: Vec<(SurfaceOutline, usize)> = second.zip(0..).collect();
+    let left = |o: &SurfaceOutline| o.bounds[0][0];
     second.sort_by(|(x, _), (y, _)| left(x).total_cmp(&left(y)));
-    let widest = |most: f64, (o, _): &(Outline, usize)| most.max(o.bounds[1][0] - left(o));
+    let widest = |most: f64, (o, _): &(SurfaceOutline, usize)| most.max(o.bounds[1][0] - left(o));
     let widest = second.iter().fold(0.0, widest);
     let slack = second.iter().fold(0.0_f64, |s, (o, _)| s.max(o.slack));
     let all = first.iter().chain(second.iter().map(|(o, _)| o));
@@ -88,20 +91,20 @@ pub(crate) fn may_face(
 }
 
 /// The bounds that contain nothing.
-const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+const NOTHING: SurfaceBox = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
 /// Where a surface is, and how far around it the search for nodes opposite looks.
-struct Outline<'a> {
+struct SurfaceOutline<'a> {
     surface: &'a Surface,
-    bounds: Bounds,
+    bounds: SurfaceBox,
     slack: f64,
 }
 
-impl Outline<'_> {
-    fn new(surface: &Surface, reach: f64) -> Outline<'_> {
+impl SurfaceOutline<'_> {
+    fn new(surface: &Surface, reach: f64) -> SurfaceOutline<'_> {
         let bounds = surface.bounds;
         let edge = surface.edges.iter().copied().fold(0.0, f64::max);
-        Outline {
+        SurfaceOutline {
             surface,
             bounds,
             // Nodes have partners a little beside their normals, and faces count as a little larger than they are.
@@ -110,7 +113,7 @@ impl Outline<'_> {
     }
 
     /// The bounds of what the nodes sweep if they move along their normals by `reach`.
-    fn swept(&self, reach: f64) -> Bounds {
+    fn swept(&self, reach: f64) -> SurfaceBox {
         let nodes = self.surface.points.iter().zip(&self.surface.normals);
         let ends = nodes.flat_map(|(p, normals)| {
             let end = |n: &[f64; 3]| [0, 1, 2].map(|d| p[d] + reach * n[d]);
@@ -121,11 +124,11 @@ impl Outline<'_> {
 }
 
 /// The bounds of points.
-pub(super) fn bounds_of(points: &[[f64; 3]]) -> Bounds {
+pub(super) fn bounds_of(points: &[[f64; 3]]) -> SurfaceBox {
     points.iter().fold(NOTHING, |b, p| union(b, [*p, *p]))
 }
 
-fn union(a: Bounds, b: Bounds) -> Bounds {
+fn union(a: SurfaceBox, b: SurfaceBox) -> SurfaceBox {
     [
         [0, 1, 2].map(|d| a[0][d].min(b[0][d])),
         [0, 1, 2].map(|d| a[1][d].max(b[1][d])),
@@ -133,12 +136,12 @@ fn union(a: Bounds, b: Bounds) -> Bounds {
 }
 
 /// The length of the diagonal.
-fn size([low, high]: Bounds) -> f64 {
+fn size([low, high]: SurfaceBox) -> f64 {
     norm(minus(high, low))
 }
 
 /// Whether two boxes are more than `slack` apart along an axis.
-pub(super) fn are_disjoint(x: &Bounds, y: &Bounds, slack: f64) -> bool {
+pub(super) fn are_disjoint(x: &SurfaceBox, y: &SurfaceBox, slack: f64) -> bool {
     (0..3).any(|d| x[0][d] > y[1][d] + slack || y[0][d] > x[1][d] + slack)
 }
 

@@ -1,7 +1,7 @@
 //! The interfaces of boxes that touch: common faces, edges and corners, and the node pairs on them.
 
 use super::facing::{coinciding, shortest};
-use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
+use super::interface::{BodyInterface, InterfaceShape, Link, SharedNode, TOLERANCE};
 use super::normals;
 use super::sweep::near;
 use crate::body::Body;
@@ -11,7 +11,7 @@ use mesh::{BoxMesh, Mesh};
 use std::collections::HashMap;
 
 /// Pairs of bodies that touch, in order of their numbers.
-pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
+pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<BodyInterface>> {
     let slack = |a: usize| {
         let [low, high] = bodies[a].bounds;
         TOLERANCE
@@ -41,7 +41,7 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
 }
 
 /// The node lines of two boxes along one direction: pairs that coincide, and those that one of them has alone.
-struct Lines {
+struct NodeLines {
     /// (position, line of the first, line of the second)
     pairs: Vec<(f64, usize, usize)>,
     /// (position, line) of each body where the other has none
@@ -49,7 +49,11 @@ struct Lines {
 }
 
 /// The interface of boxes `a` and `b`, unbent or bent by the same map.
-fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<Option<Interface>> {
+fn common(
+    bodies: &[Body],
+    meshes: [&BoxMesh; 2],
+    [a, b]: [usize; 2],
+) -> Result<Option<BodyInterface>> {
     let dim = meshes[0].dim();
     let (mut low, mut high, mut stretches) = ([0.0; 3], [0.0; 3], [false; 3]);
     for d in 0..dim {
@@ -88,7 +92,7 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
                     0
                 }
             };
-            Lines {
+            NodeLines {
                 pairs: vec![(low[d], line(0), line(1))],
                 alone: [Vec::new(), Vec::new()],
             }
@@ -123,9 +127,13 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
     } else {
         vec![[0.0; 3]; shared.len()]
     };
-    Ok(Some(Interface {
+    Ok(Some(BodyInterface {
         bodies: [a, b],
-        shape: if face { Shape::Face } else { Shape::Corner },
+        shape: if face {
+            InterfaceShape::Face
+        } else {
+            InterfaceShape::Corner
+        },
         sides,
         unmatched: unmatched(meshes, &lines, t),
         order: [0, 1],
@@ -142,7 +150,7 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
 /// Nodes of one body without a partner in the other, by body and increasing t.
 fn unmatched(
     meshes: [&BoxMesh; 2],
-    lines: &[Lines; 3],
+    lines: &[NodeLines; 3],
     t: impl Fn([f64; 3]) -> [f64; 2],
 ) -> Vec<([f64; 2], usize, usize)> {
     let mut out = Vec::new();
@@ -152,7 +160,7 @@ fn unmatched(
     for (body, mesh) in meshes.iter().enumerate() {
         // Tuples (position, line, whether the other body has no such line).
         let all = [0, 1, 2].map(|d| {
-            let Lines { pairs, alone } = &lines[d];
+            let NodeLines { pairs, alone } = &lines[d];
             let mut list: Vec<(f64, usize, bool)> = pairs
                 .iter()
                 .map(|&(x, i, j)| (x, [i, j][body], false))
@@ -178,7 +186,7 @@ fn unmatched(
 }
 
 /// The node lines of two boxes between `low` and `high`, matched by position.
-fn match_lines(meshes: [&BoxMesh; 2], d: usize, low: f64, high: f64) -> Lines {
+fn match_lines(meshes: [&BoxMesh; 2], d: usize, low: f64, high: f64) -> NodeLines {
     let lists = meshes.map(|mesh| {
         let at = |i: usize| {
             let mut place = [0; 3];
@@ -190,7 +198,7 @@ fn match_lines(meshes: [&BoxMesh; 2], d: usize, low: f64, high: f64) -> Lines {
             .collect::<Vec<(f64, usize)>>()
     });
     let near = TOLERANCE * meshes[0].step()[d].min(meshes[1].step()[d]);
-    let mut lines = Lines {
+    let mut lines = NodeLines {
         pairs: Vec::new(),
         alone: [Vec::new(), Vec::new()],
     };

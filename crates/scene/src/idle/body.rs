@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::basis::{at, dual, less, orthonormal, without, NONE};
 use super::words::driven;
-use crate::assembly::slack::{tidy, Motion};
+use crate::assembly::zero_energy::{tidy, ZeroEnergyMode};
 use crate::assembly::SubdomainMesh;
 use crate::body::Body;
 use base::linalg::csr::Csr;
@@ -26,11 +26,11 @@ pub(crate) struct BodySlack {
     /// The body.
     pub body: usize,
     /// A basis of those that nothing sees, and the degree of freedom of each at which the others vanish and it is one.
-    dual: Vec<(u32, Motion)>,
+    dual: Vec<(u32, ZeroEnergyMode)>,
     /// An orthonormal basis of the motions that nothing sees.
-    pub idle: Vec<Motion>,
+    pub idle: Vec<ZeroEnergyMode>,
     /// The motions that rows see beside rigid motions; zero where the springs are.
-    pub seen: Vec<Motion>,
+    pub seen: Vec<ZeroEnergyMode>,
     /// The words on each idle motion, for the message where a load drives it.
     what: Vec<Arc<str>>,
     /// The largest strain that cells see of the motions.
@@ -42,7 +42,7 @@ impl BodySlack {
     pub fn new(
         form: &Form,
         (b, body): (usize, &Body),
-        motions: Vec<Motion>,
+        motions: Vec<ZeroEnergyMode>,
         on_rows: &[u32],
     ) -> BodySlack {
         let c = body.components;
@@ -62,7 +62,7 @@ impl BodySlack {
                 .collect()
         };
         // Combinations of rigid motions and others that vanish somewhere.
-        let vanishing = |firsts: &[Vec<f64>], others: &[Motion], dofs: &[u32]| {
+        let vanishing = |firsts: &[Vec<f64>], others: &[ZeroEnergyMode], dofs: &[u32]| {
             let (r, n) = (firsts.len(), firsts.len() + others.len());
             let mut rows = vec![vec![0.0; n]; dofs.len()];
             for (row, &dof) in rows.iter_mut().zip(dofs) {
@@ -80,9 +80,9 @@ impl BodySlack {
             }
             null_space(rows, &[0..r, r..n], NONE)
         };
-        let whole = |firsts: &[Vec<f64>], others: &[Motion], x: &[f64]| -> Motion {
+        let whole = |firsts: &[Vec<f64>], others: &[ZeroEnergyMode], x: &[f64]| -> ZeroEnergyMode {
             let r = firsts.len();
-            let mut motion = Motion::new();
+            let mut motion = ZeroEnergyMode::new();
             let mut turned = vec![0.0; rigid.len()];
             for (first, f) in firsts.iter().zip(x) {
                 turned.iter_mut().zip(first).for_each(|(t, v)| *t += f * v);
@@ -119,7 +119,7 @@ impl BodySlack {
         idle.sort_by_key(Vec::len);
         let dual = dual(idle);
         let seen = free.into_iter().zip(is_seen).filter(|(_, seen)| *seen);
-        let seen: Vec<Motion> = seen.map(|(motion, _)| without(motion, &dual)).collect();
+        let seen: Vec<ZeroEnergyMode> = seen.map(|(motion, _)| without(motion, &dual)).collect();
         let all = dual.iter().map(|(_, motion)| motion).chain(&seen);
         let strain = strain(form, body, all);
         let idle = orthonormal(&dual);
@@ -140,7 +140,7 @@ impl BodySlack {
     /// The part of a subdomain in the idle motions: `nodes` are its nodes in the body.
     pub fn parts(&self, body: &Body, mesh: &SubdomainMesh, nodes: &[usize]) -> Vec<Idle> {
         let c = body.components;
-        let part = |(number, motion): (u32, &Motion)| {
+        let part = |(number, motion): (u32, &ZeroEnergyMode)| {
             let what = self.what[number as usize].clone();
             let mut out = Idle::new(number, self.strain, what);
             for of_node in motion.chunk_by(|a, b| a.0 / c as u32 == b.0 / c as u32) {
@@ -220,7 +220,7 @@ impl BodySlack {
 }
 
 /// The largest strain that cells of a body see of some motions.
-fn strain<'m>(form: &Form, body: &Body, motions: impl Iterator<Item = &'m Motion>) -> f64 {
+fn strain<'m>(form: &Form, body: &Body, motions: impl Iterator<Item = &'m ZeroEnergyMode>) -> f64 {
     let Mesh::Cells(mesh) = body.mesh() else {
         return 0.0;
     };

@@ -11,7 +11,7 @@ pub(super) mod body;
 mod words;
 
 use super::checked::Scene;
-use crate::assembly::slack::Motion;
+use crate::assembly::zero_energy::ZeroEnergyMode;
 use body::BodySlack;
 use words::{most, REMEDY};
 
@@ -19,7 +19,7 @@ impl Scene {
     /// The motions of the bodies, from those of their meshes; and a note on each body that has some.
     pub(super) fn find_idle(
         &self,
-        slack: Vec<(usize, Vec<Motion>)>,
+        slack: Vec<(usize, Vec<ZeroEnergyMode>)>,
     ) -> (Vec<BodySlack>, Vec<String>) {
         let (mut out, mut notes) = (Vec::new(), Vec::new());
         if slack.is_empty() {

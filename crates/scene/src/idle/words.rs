@@ -2,7 +2,7 @@
 
 use super::basis::at;
 use super::body::BodySlack;
-use crate::assembly::slack::Motion;
+use crate::assembly::zero_energy::ZeroEnergyMode;
 use crate::body::Body;
 use elements::element::may_slack;
 use elements::kind::CellKind;
@@ -41,7 +41,7 @@ impl BodySlack {
 }
 
 /// Which cells of a body leave a motion, the number of the node that moves most, and where to.
-pub(super) fn most(body: &Body, motion: &Motion) -> (String, u64, [f64; 3]) {
+pub(super) fn most(body: &Body, motion: &ZeroEnergyMode) -> (String, u64, [f64; 3]) {
     let c = body.components;
     let largest = motion.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let node = largest.map_or(0, |e| e.0 as usize / c);
@@ -80,7 +80,7 @@ pub(super) fn most(body: &Body, motion: &Motion) -> (String, u64, [f64; 3]) {
 }
 
 /// The sentence for a load that drives a motion.
-pub(super) fn driven(body: &Body, motion: &Motion) -> String {
+pub(super) fn driven(body: &Body, motion: &ZeroEnergyMode) -> String {
     let (who, node, along) = most(body, motion);
     let place = along[..body.components].iter().map(|x| x.to_string());
     let place = place.collect::<Vec<String>>().join(", ");

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::expr::Variables;
 use super::field::Field;
 use super::map::Map;
-use super::motion::Motion;
+use super::motion::Isometry;
 use super::ramp::Ramp;
 use base::Location;
 use elements::element::Integration;
@@ -62,34 +62,34 @@ pub enum Force {
 /// beyond the end of the list are free. A scalar problem uses the first component only. Copies share the list until one
 /// of them changes it.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sides(Arc<Vec<[Option<Field>; 3]>>);
+pub struct GivenSides(Arc<Vec<[Option<Field>; 3]>>);
 
-impl From<Vec<[Option<Field>; 3]>> for Sides {
-    fn from(list: Vec<[Option<Field>; 3]>) -> Sides {
-        Sides(list.into())
+impl From<Vec<[Option<Field>; 3]>> for GivenSides {
+    fn from(list: Vec<[Option<Field>; 3]>) -> GivenSides {
+        GivenSides(list.into())
     }
 }
 
-impl Deref for Sides {
+impl Deref for GivenSides {
     type Target = Vec<[Option<Field>; 3]>;
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
-impl DerefMut for Sides {
+impl DerefMut for GivenSides {
     fn deref_mut(&mut self) -> &mut Self::Target {
         Arc::make_mut(&mut self.0)
     }
 }
 
 /// No side of a box is held.
-pub fn free_all_round() -> Sides {
+pub fn free_all_round() -> GivenSides {
     vec![[const { None }; 3]; SIDES.len()].into()
 }
 
 /// u = 0 on all sides of a box, in all components.
-pub fn held_all_round() -> Sides {
+pub fn held_all_round() -> GivenSides {
     vec![held(); SIDES.len()].into()
 }
 
@@ -118,9 +118,9 @@ pub struct BodySpec {
     /// Elements and subdomains.
     pub mesh: Mesh,
     /// How the nodes of the mesh, bent into shape, come to their places; `None`: they are there.
-    pub motion: Option<Motion>,
+    pub motion: Option<Isometry>,
     /// How the coordinates of its coefficients lie in space: a copy takes them along. `None`: as those of space.
-    pub frame: Option<Motion>,
+    pub frame: Option<Isometry>,
     /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
     pub place: [usize; 3],
     /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
@@ -159,7 +159,7 @@ pub struct BodyKind {
     /// Given values besides those of sides, by degree of freedom C k + c of the body.
     pub given: Vec<(usize, f64)>,
     /// Dirichlet conditions.
-    pub dirichlet: Sides,
+    pub dirichlet: GivenSides,
 }
 
 impl Deref for BodySpec {
@@ -208,10 +208,10 @@ impl BodySpec {
     /// Components of loads and given values, and the places at which their expressions are evaluated, are those of
     /// space.
     #[must_use]
-    pub fn placed(&self, name: impl Into<String>, motion: &Motion) -> BodySpec {
+    pub fn placed(&self, name: impl Into<String>, motion: &Isometry) -> BodySpec {
         let mut copy = self.clone();
         copy.name = name.into();
-        let after = |own: &Option<Motion>| Some(own.map_or(*motion, |own| motion.after(&own)));
+        let after = |own: &Option<Isometry>| Some(own.map_or(*motion, |own| motion.after(&own)));
         copy.frame = after(&self.frame);
         match &mut copy.mesh {
             // A box that is only shifted stays one along the axes.

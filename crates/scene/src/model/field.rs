@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cells::Cells;
+use super::cells::CellGrid;
 use super::expr::{Expr, Variables};
 
 /// The index of an alternation or a table.
@@ -55,7 +55,7 @@ pub enum Field {
         otherwise: Expr,
     },
     /// Values by element, from a file. Only coefficients of boxes have them.
-    Cells(Cells),
+    Cells(CellGrid),
     /// Values by cell of a mesh of cells. Only coefficients and loads have them.
     ByCell(Arc<Vec<f64>>),
 }

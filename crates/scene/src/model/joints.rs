@@ -9,7 +9,7 @@ use fetifeti::problem::BodyNode;
 
 /// The pairs of bodies to which an entry applies.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Pair {
+pub enum PairSelector {
     /// All pairs that touch.
     All,
     /// Two bodies by name.
@@ -45,7 +45,7 @@ pub enum Extent {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TieSpec {
     /// The bodies.
-    pub pair: Pair,
+    pub pair: PairSelector,
     /// The sides that are tied, in the order of the names; `None`: wherever the bodies touch.
     pub sides: Option<[usize; 2]>,
     /// The part of their common face.
@@ -63,8 +63,8 @@ pub struct TieSpec {
 /// first; in elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
-    /// The bodies, in the order of the inequality. With [`Pair::All`] the lower number comes first.
-    pub pair: Pair,
+    /// The bodies, in the order of the inequality. With [`PairSelector::All`] the lower number comes first.
+    pub pair: PairSelector,
     /// The sides that face each other, in the order of the names, if the bodies do not touch; `None`: their common
     /// faces.
     pub sides: Option<[usize; 2]>,

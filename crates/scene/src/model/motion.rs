@@ -5,32 +5,32 @@ use base::linalg::vec3::{dot, unit};
 
 /// A rotation about the origin, then a translation: x becomes R x + t.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion {
+pub struct Isometry {
     /// R, by rows.
     pub turn: [[f64; 3]; 3],
     /// t.
     pub shift: [f64; 3],
 }
 
-impl Motion {
+impl Isometry {
     /// A translation.
-    pub fn shift(shift: [f64; 3]) -> Motion {
+    pub fn shift(shift: [f64; 3]) -> Isometry {
         let turn = IDENTITY;
-        Motion { turn, shift }
+        Isometry { turn, shift }
     }
 
     /// A rotation by an angle in degrees about an axis through the origin, then a translation. In the plane the axis is
     /// z. `None` if the axis is 0 or something is not finite.
     ///
     /// ```
-    /// use fetifeti_scene::Motion;
+    /// use fetifeti_scene::Isometry;
     ///
-    /// let motion = Motion::about([0.0, 0.0, 2.0], 90.0, [5.0, 0.0, 0.0]).expect("an axis");
+    /// let motion = Isometry::about([0.0, 0.0, 2.0], 90.0, [5.0, 0.0, 0.0]).expect("an axis");
     /// assert_eq!(motion.apply([1.0, 2.0, 3.0]), [3.0, 1.0, 3.0]);
     /// assert_eq!(motion.invert([3.0, 1.0, 3.0]), [1.0, 2.0, 3.0]);
-    /// assert!(Motion::about([0.0; 3], 90.0, [0.0; 3]).is_none());
+    /// assert!(Isometry::about([0.0; 3], 90.0, [0.0; 3]).is_none());
     /// ```
-    pub fn about(axis: [f64; 3], degrees: f64, shift: [f64; 3]) -> Option<Motion> {
+    pub fn about(axis: [f64; 3], degrees: f64, shift: [f64; 3]) -> Option<Isometry> {
         let finite = degrees.is_finite() && axis.iter().chain(&shift).all(|v| v.is_finite());
         let axis = unit(axis).filter(|_| finite)?;
         let [sin, cos] = sine_and_cosine(degrees);
@@ -43,7 +43,7 @@ impl Motion {
                 *r = cos * IDENTITY[i][j] + sin * across[i][j] + (1.0 - cos) * axis[i] * axis[j];
             }
         }
-        Some(Motion { turn, shift })
+        Some(Isometry { turn, shift })
     }
 
     /// Whether nothing turns.
@@ -73,11 +73,11 @@ impl Motion {
 
     /// This motion after another one.
     #[must_use]
-    pub fn after(&self, first: &Motion) -> Motion {
+    pub fn after(&self, first: &Isometry) -> Isometry {
         let product = |a: &Matrix, b: &Matrix| {
             a.map(|row| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
         };
-        Motion {
+        Isometry {
             turn: product(&self.turn, &first.turn),
             shift: self.apply(first.shift),
         }

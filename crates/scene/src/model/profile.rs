@@ -41,7 +41,7 @@ pub struct Limits(Vec<Limit>);
 /// One bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// The node: for a face the index into [`Interface::shared`](crate::Interface::shared), for a side the node
+    /// The node: for a face the index into [`BodyInterface::shared`](crate::BodyInterface::shared), for a side the node
     /// of the body.
     pub node: usize,
     /// g without the factors of load steps.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use base::linalg::vec3::{minus, norm};
 use base::{Error, Result};
 use elements::kind::CellKind;
-use elements::mortar::{self, Face, Side};
+use elements::mortar::{self, MortarFace, MortarSide};
 use mesh::{Members, MeshFile};
 
 /// A rigid surface. The normals of its faces point to the side that is free.
@@ -14,7 +14,7 @@ use mesh::{Members, MeshFile};
 pub struct RigidSurface {
     /// The name of its group.
     pub name: String,
-    pub(crate) side: Arc<Side>,
+    pub(crate) side: Arc<MortarSide>,
 }
 
 /// A face of a file: its number there for messages, its kind and its points in the file.
@@ -49,7 +49,7 @@ impl RigidSurface {
                 points.len() as u32 - 1
             })
         };
-        let faces = faces.into_iter().map(|(_, kind, nodes)| Face {
+        let faces = faces.into_iter().map(|(_, kind, nodes)| MortarFace {
             kind,
             nodes: nodes.into_iter().map(&mut own).collect(),
         });
@@ -62,7 +62,7 @@ impl RigidSurface {
         }
         Ok(RigidSurface {
             name: name.into(),
-            side: Arc::new(Side::new(dim, points, faces)),
+            side: Arc::new(MortarSide::new(dim, points, faces)),
         })
     }
 

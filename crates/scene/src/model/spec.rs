@@ -5,7 +5,9 @@ use super::body::{BodySpec, Load};
 use super::expr::Expr;
 use super::field::{Field, Region};
 use super::grid::GridSpec;
-use super::joints::{AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec};
+use super::joints::{
+    AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, PairSelector, TieSpec,
+};
 use super::ramp::StepsSpec;
 use base::Location;
 use elements::form::Form;
@@ -135,7 +137,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
         // A single body has no pair to tie and no nodes to select from.
         if bodies > 1 {
             spec.ties.push(TieSpec {
-                pair: Pair::All,
+                pair: PairSelector::All,
                 sides: None,
                 extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
                 multipliers: None,

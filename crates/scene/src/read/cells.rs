@@ -1,9 +1,9 @@
 //! Coefficients from files.
 
-use super::document::{Item, Section};
-use super::fields::Shape;
-use super::Reader;
-use crate::model::cells::{Cells, NumberFormat, Tone};
+use super::document::{Item, TableSection};
+use super::fields::FieldSizes;
+use super::SceneReader;
+use crate::model::cells::{CellGrid, NumberFormat, Tone};
 use crate::model::field::Field;
 use base::Result;
 use std::path::{Path, PathBuf};
@@ -15,9 +15,14 @@ enum Type {
     Numbers(NumberFormat),
 }
 
-impl Reader {
+impl SceneReader {
     /// A coefficient: a field in any of its forms, or values by element from a file.
-    pub(super) fn coefficient(&self, item: &Item, shape: &Shape, otherwise: f64) -> Result<Field> {
+    pub(super) fn coefficient(
+        &self,
+        item: &Item,
+        shape: &FieldSizes,
+        otherwise: f64,
+    ) -> Result<Field> {
         match item.section("this table") {
             Ok(section) if section.entry("file").is_some() => {
                 Ok(Field::Cells(self.cells(section, item, shape)?))
@@ -26,7 +31,12 @@ impl Reader {
         }
     }
 
-    fn cells(&self, mut section: Section, item: &Item, shape: &Shape) -> Result<Cells> {
+    fn cells(
+        &self,
+        mut section: TableSection,
+        item: &Item,
+        shape: &FieldSizes,
+    ) -> Result<CellGrid> {
         let file = section.need("file", "the name of a file")?;
         if shape.of_cells {
             return file.error("a `file` of values by element, which only boxes take");
@@ -46,7 +56,7 @@ impl Reader {
         let cells = match of {
             Some(Type::Picture) => self.picture(&mut section, &path)?,
             Some(Type::Numbers(f)) => self.numbers(&mut section, &path, Some(f), shape)?,
-            None if Cells::is_picture(&path) => self.picture(&mut section, &path)?,
+            None if CellGrid::is_picture(&path) => self.picture(&mut section, &path)?,
             None => self.numbers(&mut section, &path, None, shape)?,
         };
         section.finish()?;
@@ -54,7 +64,7 @@ impl Reader {
     }
 
     /// Reads a picture. The outer error concerns the scene, the inner one the file.
-    fn picture(&self, section: &mut Section, path: &Path) -> Result<Result<Cells>> {
+    fn picture(&self, section: &mut TableSection, path: &Path) -> Result<Result<CellGrid>> {
         if let Some(item) = section.entry("shape") {
             return item.error("`shape` for a picture, which has as many cells as pixels");
         }
@@ -62,17 +72,17 @@ impl Reader {
         let values = self.pair(section.need("values", wanted)?, wanted)?;
         let tones = [("linear", Tone::Linear), ("log", Tone::Log)];
         let tone = section.read("scale", |item| item.choice(&tones))?;
-        Ok(Cells::picture(path, values, tone.unwrap_or_default()))
+        Ok(CellGrid::picture(path, values, tone.unwrap_or_default()))
     }
 
     /// Reads numbers: one for each element, unless there is a `shape`.
     fn numbers(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         path: &Path,
         format: Option<NumberFormat>,
-        shape: &Shape,
-    ) -> Result<Result<Cells>> {
+        shape: &FieldSizes,
+    ) -> Result<Result<CellGrid>> {
         for key in ["values", "scale"] {
             if let Some(item) = section.entry(key) {
                 return item.error(format!(
@@ -85,6 +95,6 @@ impl Reader {
             let bodies = shape.bodies.unwrap_or([1; 3]);
             [0, 1, 2].map(|d| bodies[d] * shape.mesh.elements[d].max(1))
         };
-        Ok(Cells::read(path, counts.unwrap_or_else(each), format))
+        Ok(CellGrid::read(path, counts.unwrap_or_else(each), format))
     }
 }

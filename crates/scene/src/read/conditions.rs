@@ -2,26 +2,26 @@
 
 use std::collections::BTreeSet;
 
-use super::document::{Item, Section, Value};
+use super::document::{Item, TableSection, Value};
 use super::groups::some;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::{held, BodySpec, Force, SurfaceLoad};
 use crate::model::field::Field;
 use base::Result;
 use mesh::CellMesh;
 
 /// The boundary groups of the parts of a body.
-pub(super) struct Groups {
+pub(super) struct BoundaryGroups {
     names: BTreeSet<String>,
     /// The names of the groups that have a face on the boundary of a part.
     with_faces: BTreeSet<String>,
 }
 
-impl Groups {
-    pub fn of(parts: &[CellMesh]) -> Groups {
+impl BoundaryGroups {
+    pub fn of(parts: &[CellMesh]) -> BoundaryGroups {
         let sides = || parts.iter().flat_map(|part| &part.sides);
         let with_faces = sides().filter(|side| !side.faces.is_empty());
-        Groups {
+        BoundaryGroups {
             names: sides().map(|side| side.name.clone()).collect(),
             with_faces: with_faces.map(|side| side.name.clone()).collect(),
         }
@@ -41,7 +41,7 @@ impl Groups {
 }
 
 /// Given values by boundary group.
-type Held = Vec<(String, [Option<Field>; 3])>;
+type SupportsByGroup = Vec<(String, [Option<Field>; 3])>;
 
 /// The loads, springs and given values of a body at its boundary groups. An absent entry leaves a body as it is.
 #[derive(Default)]
@@ -49,7 +49,7 @@ pub(super) struct OfGroups {
     /// Loads, each list with whether it is one of pressures.
     forces: Vec<(bool, Vec<(String, Force)>)>,
     springs: Option<Vec<(String, Field)>>,
-    dirichlet: Option<Held>,
+    dirichlet: Option<SupportsByGroup>,
 }
 
 impl OfGroups {
@@ -82,12 +82,12 @@ impl OfGroups {
     }
 }
 
-impl Reader {
+impl SceneReader {
     /// Loads and given values of boundary groups.
     pub(super) fn conditions_of_mesh(
         &self,
-        section: &mut Section,
-        groups: &Groups,
+        section: &mut TableSection,
+        groups: &BoundaryGroups,
     ) -> Result<OfGroups> {
         let mut out = OfGroups::default();
         let keys: &[(&'static str, bool)] = if self.form.is_elastic() {
@@ -126,9 +126,9 @@ impl Reader {
     /// The entries of a table whose keys are boundary groups.
     fn by_group<'a>(
         &self,
-        section: &mut Section<'a>,
+        section: &mut TableSection<'a>,
         key: &'static str,
-        groups: &Groups,
+        groups: &BoundaryGroups,
     ) -> Result<Option<Vec<(&'a str, &'a Item<'a>)>>> {
         let Some(item) = section.take(key) else {
             return Ok(None);
@@ -143,11 +143,15 @@ impl Reader {
     }
 
     /// `dirichlet`: "all", "none", a list of groups held at zero, or a table of values.
-    fn held_groups(&self, section: &mut Section, groups: &Groups) -> Result<Option<Held>> {
+    fn held_groups(
+        &self,
+        section: &mut TableSection,
+        groups: &BoundaryGroups,
+    ) -> Result<Option<SupportsByGroup>> {
         let Some(item) = section.take("dirichlet") else {
             return Ok(None);
         };
-        let list: Result<Held> = match &item.value {
+        let list: Result<SupportsByGroup> = match &item.value {
             Value::Text(text) if text == "none" => Ok(Vec::new()),
             Value::Text(_) => {
                 let name = item.text("a boundary group")?;
@@ -173,7 +177,7 @@ impl Reader {
 }
 
 /// An error if no part of the body has a boundary group of this name.
-fn known(item: &Item, name: &str, groups: &Groups) -> Result<()> {
+fn known(item: &Item, name: &str, groups: &BoundaryGroups) -> Result<()> {
     if groups.names.contains(name) {
         return Ok(());
     }

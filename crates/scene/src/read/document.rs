@@ -100,9 +100,9 @@ impl<'a> Item<'a> {
     }
 
     /// The table, which messages call `what`.
-    pub fn section<'i>(&'i self, what: &'i str) -> Result<Section<'i>> {
+    pub fn section<'i>(&'i self, what: &'i str) -> Result<TableSection<'i>> {
         match &self.value {
-            Value::Table(entries) => Ok(Section {
+            Value::Table(entries) => Ok(TableSection {
                 item: self,
                 what,
                 entries,
@@ -129,7 +129,7 @@ impl<'a> Item<'a> {
 pub(super) fn parse<'a>(file: &'a str, text: &str) -> Result<Item<'a>> {
     let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
     let ends = ends.map(|(place, _)| place).collect();
-    let source = Source { file, ends };
+    let source = SourceText { file, ends };
     let table = DeTable::parse(text).map_err(|e| {
         let line = e.span().map_or(1, |span| source.line(span.start));
         let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
@@ -143,13 +143,13 @@ pub(super) fn parse<'a>(file: &'a str, text: &str) -> Result<Item<'a>> {
     })
 }
 
-struct Source<'a> {
+struct SourceText<'a> {
     file: &'a str,
     /// Where lines end.
     ends: Vec<usize>,
 }
 
-impl<'a> Source<'a> {
+impl<'a> SourceText<'a> {
     fn line(&self, byte: usize) -> usize {
         self.ends.partition_point(|&end| end < byte) + 1
     }
@@ -203,7 +203,7 @@ impl<'a> Source<'a> {
 }
 
 /// A table that is read key by key; the keys left over at the end are unknown.
-pub(super) struct Section<'a> {
+pub(super) struct TableSection<'a> {
     item: &'a Item<'a>,
     /// The name of the table in messages: "[[body]]", "the scene", ….
     what: &'a str,
@@ -212,14 +212,14 @@ pub(super) struct Section<'a> {
     known: Vec<&'static str>,
 }
 
-impl<'a> Section<'a> {
+impl<'a> TableSection<'a> {
     /// The value of `key`, if it is there.
     pub fn take(&mut self, key: &'static str) -> Option<&'a Item<'a>> {
         self.known.push(key);
         self.entry(key)
     }
 
-    /// As [`Section::take`], for a key that is not allowed here.
+    /// As [`TableSection::take`], for a key that is not allowed here.
     pub fn entry(&self, key: &str) -> Option<&'a Item<'a>> {
         let entry = self.entries.iter().find(|(k, _, _)| k == key);
         entry.map(|(_, _, item)| item)

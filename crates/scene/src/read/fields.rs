@@ -1,7 +1,7 @@
 //! Coefficients, loads and boundary values in all their forms.
 
 use super::document::{Item, Value};
-use super::Reader;
+use super::SceneReader;
 use crate::model::expr::Expr;
 use crate::model::field::{By, Field, Region};
 use base::Result;
@@ -9,7 +9,7 @@ use elements::q1::Quadrature;
 use mesh::BoxMesh;
 
 /// The sizes against which tables of values are checked.
-pub(super) struct Shape {
+pub(super) struct FieldSizes {
     /// The mesh of the body; of a grid the elements and subdomains of each body.
     pub mesh: BoxMesh,
     /// Bodies of the grid, `None` outside a grid.
@@ -18,12 +18,12 @@ pub(super) struct Shape {
     pub of_cells: bool,
 }
 
-impl Reader {
+impl SceneReader {
     /// A field in any of its forms, and the quadrature if a table names one.
     pub(super) fn field(
         &self,
         item: &Item,
-        shape: &Shape,
+        shape: &FieldSizes,
         otherwise: f64,
     ) -> Result<(Field, Option<Quadrature>)> {
         match &item.value {
@@ -41,7 +41,7 @@ impl Reader {
     fn field_table(
         &self,
         item: &Item,
-        shape: &Shape,
+        shape: &FieldSizes,
         otherwise: f64,
     ) -> Result<(Field, Option<Quadrature>)> {
         const FORMS: &str = "`value`, `regions`, `checkerboard`, `per_body` or `per_subdomain`";
@@ -94,7 +94,7 @@ impl Reader {
     }
 
     /// Rows of numbers, the first at the bottom; in three dimensions a list of such layers.
-    fn table(&self, item: &Item, shape: &Shape, by: By) -> Result<Field> {
+    fn table(&self, item: &Item, shape: &FieldSizes, by: By) -> Result<Field> {
         let (what, [columns, height, depth]) = match (by, shape.bodies) {
             (By::Body, Some(bodies)) => ("bodies", bodies),
             (By::Body, None) => {
@@ -148,7 +148,7 @@ impl Reader {
     pub(super) fn vector_field(
         &self,
         item: &Item,
-        shape: &Shape,
+        shape: &FieldSizes,
     ) -> Result<(Vec<Field>, Option<Quadrature>)> {
         let c = self.form.components(self.dim);
         if c == 1 {

@@ -1,7 +1,7 @@
 //! Dimension, physics and elements of a scene.
 
-use super::document::{Item, Section, Value};
-use super::Reader;
+use super::document::{Item, TableSection, Value};
+use super::SceneReader;
 use base::Result;
 use elements::cell::{Cure, Element, Plane};
 use elements::element::Integration;
@@ -25,9 +25,9 @@ pub(super) fn rules(rule: Option<Integration>, mesh: &CellMesh) -> Vec<Integrati
     }
 }
 
-impl Reader {
+impl SceneReader {
     /// Reads the keys of the scene on which all others depend.
-    pub(super) fn new(scene: &mut Section) -> Result<Reader> {
+    pub(super) fn new(scene: &mut TableSection) -> Result<SceneReader> {
         let dim = scene.read("dimension", |item| match item.value {
             Value::Integer(d @ (2 | 3)) => Ok(d as usize),
             _ => item.expected("2 or 3"),
@@ -76,6 +76,6 @@ impl Reader {
             }
         }
         let order = scene.read("order", super::order)?.unwrap_or(1);
-        Ok(Reader { order, dim, form })
+        Ok(SceneReader { order, dim, form })
     }
 }

@@ -1,8 +1,8 @@
 //! Copies of a body, and what only some of them have.
 
-use super::document::{Item, Section, Value};
+use super::document::{Item, TableSection, Value};
 use super::placements::Placement;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::BodySpec;
 use base::Result;
 use std::collections::HashMap;
@@ -54,7 +54,7 @@ pub(super) fn fits(pattern: &str, text: &str) -> bool {
     rest.ends_with(last)
 }
 
-impl Reader {
+impl SceneReader {
     /// The copies of a body, named `name[k]`, or as their placements say. `read` changes a body by the conditions of an
     /// entry `only`.
     pub(super) fn copies(
@@ -62,7 +62,7 @@ impl Reader {
         body: &BodySpec,
         placements: &[Placement],
         only: &[Item],
-        read: impl Fn(&mut Section, &mut BodySpec) -> Result<()>,
+        read: impl Fn(&mut TableSection, &mut BodySpec) -> Result<()>,
     ) -> Result<Vec<BodySpec>> {
         let selectors: Vec<Selector> = only
             .iter()
@@ -113,7 +113,7 @@ impl Reader {
     }
 
     /// The keys that say which copies are meant.
-    fn selector(&self, section: &mut Section) -> Result<Selector> {
+    fn selector(&self, section: &mut TableSection) -> Result<Selector> {
         let mut selector = Selector {
             numbers: Vec::new(),
             names: Vec::new(),

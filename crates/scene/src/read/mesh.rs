@@ -1,12 +1,12 @@
 //! [mesh], and bodies that are groups of its cells.
 
-use super::conditions::Groups;
+use super::conditions::BoundaryGroups;
 use super::document::Item;
-use super::fields::Shape;
+use super::fields::FieldSizes;
 use super::form::{integration, rules};
 use super::groups::some;
 use super::instances::none_to_select;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::{BodySpec, Cut};
 use crate::model::rigid_surface::RigidSurface;
 use crate::quantity::unfit_size;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene.
-pub(super) struct Source {
+pub(super) struct SceneMesh {
     mesh: Extractor<MeshFile>,
     /// The groups of cells of the scene's dimension: their places in the list of groups. Of equal names the first.
     groups: HashMap<String, usize>,
@@ -42,9 +42,9 @@ const OF_BOXES: [&str; 6] = [
     "order",
 ];
 
-impl Source {
+impl SceneMesh {
     /// Reads `[mesh]` and its file, which is relative to the scene's own directory.
-    pub fn read(reader: &Reader, item: &Item) -> Result<Source> {
+    pub fn read(reader: &SceneReader, item: &Item) -> Result<SceneMesh> {
         let mut section = item.section("[mesh]")?;
         let file = section.need("file", "the name of a file")?;
         let mesh = load_beside(file)?.counter_clockwise(reader.dim);
@@ -56,7 +56,7 @@ impl Source {
                 groups.entry(group.name.clone()).or_insert(k);
             }
         }
-        Ok(Source {
+        Ok(SceneMesh {
             taken: vec![false; mesh.cells.len()],
             mesh: Extractor::new(mesh, reader.dim),
             groups,
@@ -199,9 +199,9 @@ pub(crate) fn load(path: &Path) -> Result<MeshFile> {
     }
 }
 
-impl Reader {
+impl SceneReader {
     /// The bodies of a group of cells: one for each connected part. Parts after the first are numbered.
-    pub(super) fn mesh_bodies(&self, item: &Item, source: &mut Source) -> Result<Vec<BodySpec>> {
+    pub(super) fn mesh_bodies(&self, item: &Item, source: &mut SceneMesh) -> Result<Vec<BodySpec>> {
         let mut section = item.section("[[body]]")?;
         let name = section.need("name", "the name of a group of cells")?;
         let name = name.text("the name of a group of cells")?;
@@ -217,8 +217,8 @@ impl Reader {
         let rule = section.read("integration", integration)?;
         let parts = source.parts(item, &name)?;
         let several = parts.len() > 1;
-        let groups = Groups::of(&parts);
-        let shape = Shape {
+        let groups = BoundaryGroups::of(&parts);
+        let shape = FieldSizes {
             mesh: BoxMesh::plane([0.0; 2], [1.0; 2], [1; 2], [1; 2]),
             bodies: None,
             of_cells: true,

@@ -24,9 +24,9 @@ use super::model::spec::SceneSpec;
 use super::validate::MOST_BODIES;
 use ::mesh::BoxMesh;
 use base::{Error, ErrorKind, Result};
-use document::{Item, Section, Value};
+use document::{Item, TableSection, Value};
 use elements::form::Form;
-use fields::Shape;
+use fields::FieldSizes;
 pub(super) use values::MOST as MOST_IN_A_ROW;
 use values::MOST;
 
@@ -43,13 +43,13 @@ pub fn read(file: &str, text: &str) -> Result<SceneSpec> {
 fn spec(file: &str, text: &str) -> Result<SceneSpec> {
     let root = document::parse(file, text)?;
     let mut scene = root.section("the scene")?;
-    let reader = Reader::new(&mut scene)?;
+    let reader = SceneReader::new(&mut scene)?;
 
     let title = match (scene.take("name"), scene.take("title")) {
         (_, Some(item)) | (Some(item), None) => item.text("a title")?,
         (None, None) => stem(file),
     };
-    let mut source = scene.read("mesh", |item| mesh::Source::read(&reader, item))?;
+    let mut source = scene.read("mesh", |item| mesh::SceneMesh::read(&reader, item))?;
     let grids = scene.each("grid", |item| Ok(reader.grid(item)?.expand()))?;
     let mut bodies = grids.concat();
     if let Some(source) = &mut source {
@@ -58,7 +58,7 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
     }
     for item in scene.tables("body")? {
         match &mut source {
-            Some(source) if mesh::Source::has(item) => {
+            Some(source) if mesh::SceneMesh::has(item) => {
                 bodies.extend(reader.mesh_bodies(item, source)?)
             }
             _ => bodies.extend(reader.bodies_of(item, bodies.len())?),
@@ -82,7 +82,7 @@ fn spec(file: &str, text: &str) -> Result<SceneSpec> {
             "{file}: the scene has no bodies ([[body]] or [grid] was expected)"
         )));
     }
-    let entries = unused::Entries {
+    let entries = unused::SceneEntries {
         bodies: &bodies,
         ties: &ties,
         contacts: &contacts,
@@ -140,7 +140,7 @@ fn order(item: &Item) -> Result<usize> {
     }
 }
 
-struct Reader {
+struct SceneReader {
     /// The order of the elements of boxes that say nothing else.
     order: usize,
     /// The dimension of the scene.
@@ -149,7 +149,7 @@ struct Reader {
     form: Form,
 }
 
-impl Reader {
+impl SceneReader {
     /// A body or its copies; without a name it is called by its number.
     fn bodies_of(&self, item: &Item, number: usize) -> Result<Vec<BodySpec>> {
         let mut section = item.section("[[body]]")?;
@@ -188,11 +188,11 @@ impl Reader {
     /// The keys that a body has, and a grid of `bodies`.
     fn box_of_elements(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         item: &Item,
         name: String,
         bodies: Option<[usize; 3]>,
-    ) -> Result<(BodySpec, Shape)> {
+    ) -> Result<(BodySpec, FieldSizes)> {
         let wanted = ["a point [x, y]", "a point [x, y, z]"][self.dim - 2];
         let origin = section.read("origin", |item| self.vector(item, wanted))?;
         let bent = section.take("shape");
@@ -210,7 +210,7 @@ impl Reader {
             subdomains,
         };
         let map = bent.map(|item| self.map(item, &mesh)).transpose()?;
-        let shape = Shape {
+        let shape = FieldSizes {
             mesh,
             bodies,
             of_cells: false,
@@ -225,8 +225,8 @@ impl Reader {
     /// Material, loads and given values of a box: each key that is there replaces what the body has.
     fn conditions_of_box(
         &self,
-        section: &mut Section,
-        shape: &Shape,
+        section: &mut TableSection,
+        shape: &FieldSizes,
         body: &mut BodySpec,
     ) -> Result<()> {
         self.material_and_load(section, shape, body)?;
@@ -243,8 +243,8 @@ impl Reader {
     /// Material, load and ramp of a body: each key that is there replaces what the body has.
     fn material_and_load(
         &self,
-        section: &mut Section,
-        shape: &Shape,
+        section: &mut TableSection,
+        shape: &FieldSizes,
         body: &mut BodySpec,
     ) -> Result<()> {
         let elastic = self.form.is_elastic();
@@ -268,7 +268,7 @@ impl Reader {
     /// `elements` or `elements_per_subdomain`, and `subdomains`.
     fn partition(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         item: &Item,
         name: &str,
         grid: bool,

@@ -1,11 +1,11 @@
 //! [[obstacle]].
 
-use super::document::{Item, Section, Value};
+use super::document::{Item, TableSection, Value};
 use super::groups::{sides_of, some};
 use super::instances::fits;
-use super::mesh::{load_beside, Source};
+use super::mesh::{load_beside, SceneMesh};
 use super::ties::body_name;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::BodySpec;
 use crate::model::joints::{Extent, ObstacleSpec};
 use crate::model::profile::Profile;
@@ -23,13 +23,13 @@ struct RigidShape {
     adjust: f64,
 }
 
-impl Reader {
+impl SceneReader {
     /// An obstacle; one for each of all bodies where some of them are meshes, whose sides have numbers of their own.
     pub(super) fn obstacle(
         &self,
         item: &Item,
         bodies: &[BodySpec],
-        source: Option<&mut Source>,
+        source: Option<&mut SceneMesh>,
     ) -> Result<Vec<ObstacleSpec>> {
         let mut section = item.section("[[obstacle]]")?;
         let wanted = "\"all\" or the name of a body";
@@ -172,10 +172,10 @@ impl Reader {
     /// `plane`, `cylinder`, `sphere` or `surface`, and the keys beside them.
     fn rigid_shape(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         entry: &Item,
         bodies: &[BodySpec],
-        source: Option<&mut Source>,
+        source: Option<&mut SceneMesh>,
         extent: &Extent,
     ) -> Result<RigidShape> {
         let rigid = self.rigid(section, entry)?;
@@ -206,10 +206,10 @@ impl Reader {
     /// `surface`: a group of faces of the scene's mesh, or of the file `mesh`.
     fn rigid_surface(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         entry: &Item,
         bodies: &[BodySpec],
-        source: Option<&mut Source>,
+        source: Option<&mut SceneMesh>,
     ) -> Result<Option<RigidSurface>> {
         let item = section.take("surface");
         let file = section.take("mesh");

@@ -1,8 +1,8 @@
 //! Tables of placements: where the copies of a body stand, as a list in the scene or as lines of a file.
 
 use super::document::{Item, Value};
-use super::Reader;
-use crate::model::motion::Motion;
+use super::SceneReader;
+use crate::model::motion::Isometry;
 use base::{Error, Location, Result};
 use mesh::bytes;
 use std::path::{Path, PathBuf};
@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 /// Where a copy of a body stands.
 #[derive(Debug)]
 pub(super) struct Placement {
-    pub motion: Motion,
+    pub motion: Isometry,
     /// Its name, if it has one of its own.
     pub name: Option<String>,
     /// The place where it was written, as messages begin with it.
     pub location: Location,
 }
 
-impl Reader {
+impl SceneReader {
     /// `instances` of a body: a list, or the name of a file beside the scene.
     pub(super) fn placements(&self, item: &Item) -> Result<Vec<Placement>> {
         let list: Vec<Placement> = match &item.value {
@@ -53,7 +53,7 @@ impl Reader {
         })
     }
 
-    fn placement_table(&self, item: &Item) -> Result<(Motion, Option<String>)> {
+    fn placement_table(&self, item: &Item) -> Result<(Isometry, Option<String>)> {
         let mut section = item.section("a placement")?;
         let at = ["a point [x, y]", "a point [x, y, z]"][self.dim - 2];
         let shift = self.vector(section.need("at", at)?, at)?;
@@ -122,17 +122,17 @@ impl Reader {
     }
 
     /// The motion that some numbers describe.
-    fn motion(&self, numbers: &[f64]) -> std::result::Result<Motion, String> {
+    fn motion(&self, numbers: &[f64]) -> std::result::Result<Isometry, String> {
         const STILL: [f64; 3] = [0.0, 0.0, 1.0];
         let motion = match (self.dim, numbers) {
-            (2, &[x, y]) => Some(Motion::shift([x, y, 0.0])),
-            (2, &[x, y, angle]) => Motion::about(STILL, angle, [x, y, 0.0]),
-            (3, &[x, y, z]) => Some(Motion::shift([x, y, z])),
-            (3, &[x, y, z, 0.0, 0.0, 0.0]) => Some(Motion::shift([x, y, z])),
+            (2, &[x, y]) => Some(Isometry::shift([x, y, 0.0])),
+            (2, &[x, y, angle]) => Isometry::about(STILL, angle, [x, y, 0.0]),
+            (3, &[x, y, z]) => Some(Isometry::shift([x, y, z])),
+            (3, &[x, y, z, 0.0, 0.0, 0.0]) => Some(Isometry::shift([x, y, z])),
             (3, &[x, y, z, a, b, c]) => {
-                Motion::about([a, b, c], (a * a + b * b + c * c).sqrt(), [x, y, z])
+                Isometry::about([a, b, c], (a * a + b * b + c * c).sqrt(), [x, y, z])
             }
-            (3, &[x, y, z, a, b, c, angle]) => Motion::about([a, b, c], angle, [x, y, z]),
+            (3, &[x, y, z, a, b, c, angle]) => Isometry::about([a, b, c], angle, [x, y, z]),
             _ => {
                 let wanted = [
                     "x y, and an angle if it is turned",

@@ -2,12 +2,12 @@
 
 use super::document::Item;
 use super::ties::body_name;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::BodySpec;
 use crate::model::spec::ProbeSpec;
 use base::Result;
 
-impl Reader {
+impl SceneReader {
     pub(super) fn probe(&self, item: &Item, bodies: &[BodySpec]) -> Result<ProbeSpec> {
         let mut section = item.section("[[probe]]")?;
         let name = section.need("name", "a name")?.text("a name")?;

@@ -1,7 +1,7 @@
 //! `shape` of a body, and the rigid bodies of obstacles.
 
-use super::document::{Item, Section, Value};
-use super::Reader;
+use super::document::{Item, TableSection, Value};
+use super::SceneReader;
 use crate::model::expr::Expr;
 use crate::model::map::{BodyShape, Map, Round};
 use crate::model::rigid::Rigid;
@@ -9,7 +9,7 @@ use base::linalg::vec3::unit;
 use base::Result;
 use mesh::BoxMesh;
 
-impl Reader {
+impl SceneReader {
     /// How a box is bent: coordinates as expressions, or a named shape with its measures.
     pub(super) fn map(&self, item: &Item, mesh: &BoxMesh) -> Result<Map> {
         const FORMS: &str =
@@ -113,7 +113,7 @@ impl Reader {
     }
 
     /// The rigid body of an obstacle, if it has one: `plane`, `cylinder` or `sphere`.
-    pub(super) fn rigid(&self, section: &mut Section, entry: &Item) -> Result<Option<Rigid>> {
+    pub(super) fn rigid(&self, section: &mut TableSection, entry: &Item) -> Result<Option<Rigid>> {
         let mut found = Vec::new();
         found.extend(section.read("plane", |item| {
             let mut plane = item.section("`plane`")?;

@@ -1,14 +1,14 @@
 //! Conditions on sides of bodies: given values, fluxes, tractions, pressures.
 
-use super::document::{Item, Section, Value};
-use super::Reader;
-use crate::model::body::{free_all_round, held, held_all_round, Force, Sides, SurfaceLoad};
+use super::document::{Item, TableSection, Value};
+use super::SceneReader;
+use crate::model::body::{free_all_round, held, held_all_round, Force, GivenSides, SurfaceLoad};
 use crate::model::field::Field;
 use base::Result;
 
-impl Reader {
+impl SceneReader {
     /// Dirichlet conditions: "all", "none", a list of sides held at zero, or a table of values.
-    pub(super) fn sides(&self, item: &Item) -> Result<Sides> {
+    pub(super) fn sides(&self, item: &Item) -> Result<GivenSides> {
         let mut sides = free_all_round();
         let mut hold = |side: usize, given: [Option<Field>; 3]| {
             let n = sides.len().max(side + 1);
@@ -67,7 +67,7 @@ impl Reader {
     /// `loads` has of its kind.
     pub(super) fn surface_loads(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         loads: &mut Vec<SurfaceLoad>,
     ) -> Result<()> {
         let traction = |item: &Item| {
@@ -95,7 +95,10 @@ impl Reader {
     }
 
     /// Elastic foundations on sides.
-    pub(super) fn springs(&self, section: &mut Section) -> Result<Option<Vec<(usize, Field)>>> {
+    pub(super) fn springs(
+        &self,
+        section: &mut TableSection,
+    ) -> Result<Option<Vec<(usize, Field)>>> {
         let read = |item| self.by_side(item, "`spring`", |i| self.formula(i));
         section.read("spring", read)
     }

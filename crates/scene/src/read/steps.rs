@@ -1,7 +1,7 @@
 //! `[steps]`, `ramp`, and gaps and bounds in all their forms.
 
-use super::document::{Item, Section, Value};
-use super::Reader;
+use super::document::{Item, TableSection, Value};
+use super::SceneReader;
 use crate::model::profile::Profile;
 use crate::model::ramp::{Ramp, StepsSpec};
 use base::Result;
@@ -9,7 +9,7 @@ use base::Result;
 /// Largest number of load steps.
 const MOST_STEPS: usize = 1 << 20;
 
-impl Reader {
+impl SceneReader {
     pub(super) fn steps(&self, item: &Item) -> Result<StepsSpec> {
         let mut section = item.section("[steps]")?;
         let times = match (section.take("count"), section.take("times")) {
@@ -68,7 +68,7 @@ impl Reader {
     }
 
     /// `ramp`, where it is given.
-    pub(super) fn ramp(&self, section: &mut Section) -> Result<Option<Ramp>> {
+    pub(super) fn ramp(&self, section: &mut TableSection) -> Result<Option<Ramp>> {
         section.read("ramp", ramp)
     }
 

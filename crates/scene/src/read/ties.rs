@@ -1,16 +1,16 @@
 //! [interface], [[tie]] and [[contact]].
 
-use super::document::{Item, Section, Value};
+use super::document::{Item, TableSection, Value};
 use super::groups::sides_of;
-use super::Reader;
+use super::SceneReader;
 use crate::model::body::BodySpec;
-use crate::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
+use crate::model::joints::{AutoContact, ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::ByDefault;
 use base::Result;
 use mesh::SideGroup;
 
-impl Reader {
+impl SceneReader {
     pub(super) fn interface(&self, item: &Item) -> Result<ByDefault> {
         let mut section = item.section("[interface]")?;
         let words = [
@@ -33,7 +33,7 @@ impl Reader {
         let mut extent = self.extent(&mut section, item, "[[tie]]")?;
         section.finish()?;
         if let Some(tolerance) = tolerance {
-            if sides.is_none() && !matches!(pair, Pair::Surfaces(..)) {
+            if sides.is_none() && !matches!(pair, PairSelector::Surfaces(..)) {
                 return item.error(
                     "`position_tolerance` without `surfaces` or `sides` (bodies that touch are tied where they touch)",
                 );
@@ -86,7 +86,7 @@ impl Reader {
     /// [contact] with `auto`, or the list [[contact]].
     pub(super) fn contacts(
         &self,
-        scene: &mut Section,
+        scene: &mut TableSection,
         bodies: &[BodySpec],
     ) -> Result<(Option<AutoContact>, Vec<ContactSpec>)> {
         match scene.tables("contact")? {
@@ -117,7 +117,7 @@ impl Reader {
     }
 
     /// `bodies`, or `surfaces` of meshes.
-    fn pair_of(&self, section: &mut Section, bodies: &[BodySpec]) -> Result<Pair> {
+    fn pair_of(&self, section: &mut TableSection, bodies: &[BodySpec]) -> Result<PairSelector> {
         let Some(item) = section.take("surfaces") else {
             return self.bodies(section, bodies);
         };
@@ -148,7 +148,7 @@ impl Reader {
             }
         };
         match item.list("a pair of boundary groups")? {
-            [a, b] => Ok(Pair::Surfaces(name(a)?, name(b)?)),
+            [a, b] => Ok(PairSelector::Surfaces(name(a)?, name(b)?)),
             _ => item.expected("a pair of boundary groups"),
         }
     }
@@ -165,8 +165,13 @@ impl Reader {
     }
 
     /// The sides of two named bodies.
-    fn pair_of_sides(&self, item: &Item, pair: &Pair, bodies: &[BodySpec]) -> Result<[usize; 2]> {
-        let Pair::Named(first, second) = pair else {
+    fn pair_of_sides(
+        &self,
+        item: &Item,
+        pair: &PairSelector,
+        bodies: &[BodySpec],
+    ) -> Result<[usize; 2]> {
+        let PairSelector::Named(first, second) = pair else {
             return item.error("`sides` for all pairs, where two named bodies were expected");
         };
         let side = |item: &Item, name: &String| {
@@ -193,14 +198,14 @@ impl Reader {
     }
 
     /// `bodies`: "all" or a pair.
-    fn bodies(&self, section: &mut Section, bodies: &[BodySpec]) -> Result<Pair> {
+    fn bodies(&self, section: &mut TableSection, bodies: &[BodySpec]) -> Result<PairSelector> {
         let wanted = "\"all\" or a pair of names";
         let named = section.need("bodies", wanted)?;
         match &named.value {
-            _ if named.is("all") => Ok(Pair::All),
+            _ if named.is("all") => Ok(PairSelector::All),
             Value::List(items) if items.len() == 2 => {
                 let name = |k: usize| body_name(&items[k], bodies, "the name of a body");
-                Ok(Pair::Named(name(0)?, name(1)?))
+                Ok(PairSelector::Named(name(0)?, name(1)?))
             }
             _ => named.expected(wanted),
         }
@@ -227,7 +232,12 @@ impl Reader {
     }
 
     /// `where`, `range`, `points` or `nodes`.
-    pub(super) fn extent(&self, section: &mut Section, entry: &Item, what: &str) -> Result<Extent> {
+    pub(super) fn extent(
+        &self,
+        section: &mut TableSection,
+        entry: &Item,
+        what: &str,
+    ) -> Result<Extent> {
         let mut extents = Vec::new();
         extents.extend(section.read("where", |item| match &item.value {
             _ if item.is("all") => Ok(Extent::All),
@@ -288,8 +298,8 @@ fn has_faces(body: &BodySpec, name: &str) -> bool {
 }
 
 /// `multipliers`: the one of two bodies or surfaces that carries them.
-fn which(item: &Item, pair: &Pair) -> Result<usize> {
-    let (Pair::Named(a, b) | Pair::Surfaces(a, b)) = pair else {
+fn which(item: &Item, pair: &PairSelector) -> Result<usize> {
+    let (PairSelector::Named(a, b) | PairSelector::Surfaces(a, b)) = pair else {
         return item.error("`multipliers` for all pairs, where two names were expected");
     };
     match [a, b].iter().position(|name| item.is(name)) {

@@ -2,16 +2,16 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use super::mesh::Source;
+use super::mesh::SceneMesh;
 use crate::model::body::BodySpec;
-use crate::model::joints::{ContactSpec, ObstacleSpec, Pair, TieSpec};
-use mesh::{Group, Members, MeshFile, SKIN};
+use crate::model::joints::{ContactSpec, ObstacleSpec, PairSelector, TieSpec};
+use mesh::{Members, MeshFile, MeshGroup, SKIN};
 
 /// Groups that are named one by one.
 const LIST: usize = 8;
 
 /// The entries of a scene that may name boundary groups.
-pub(super) struct Entries<'s> {
+pub(super) struct SceneEntries<'s> {
     pub bodies: &'s [BodySpec],
     pub ties: &'s [TieSpec],
     pub contacts: &'s [ContactSpec],
@@ -19,12 +19,12 @@ pub(super) struct Entries<'s> {
 }
 
 /// Sentences on what is left out.
-pub(super) fn notes(source: &Source, entries: &Entries<'_>) -> Vec<String> {
+pub(super) fn notes(source: &SceneMesh, entries: &SceneEntries<'_>) -> Vec<String> {
     let (file, dim) = (source.file(), source.dim());
     let mut out: Vec<String> = file.unused(dim, &source.rigid).into_iter().collect();
     out.extend(cells(source));
     let named = source.bodies.iter().map(String::as_str).collect();
-    let lost = |group: &Group| match &group.members {
+    let lost = |group: &MeshGroup| match &group.members {
         Members::Cells { cells, .. } if is_of_cells(group, dim) => {
             cells.iter().any(|&c| !source.taken[c as usize])
         }
@@ -41,7 +41,7 @@ pub(super) fn notes(source: &Source, entries: &Entries<'_>) -> Vec<String> {
 }
 
 /// The sentence on boundary groups that no entry names. Where one names the whole boundary it takes all groups there.
-pub(super) fn unnamed(source: &Source, entries: &Entries<'_>) -> Option<String> {
+pub(super) fn unnamed(source: &SceneMesh, entries: &SceneEntries<'_>) -> Option<String> {
     let mut named = entries.with_faces();
     named.extend(entries.held());
     if named.contains(SKIN) {
@@ -55,12 +55,12 @@ pub(super) fn unnamed(source: &Source, entries: &Entries<'_>) -> Option<String> 
 }
 
 /// Whether a group has the cells of bodies.
-fn is_of_cells(group: &Group, dim: usize) -> bool {
+fn is_of_cells(group: &MeshGroup, dim: usize) -> bool {
     matches!(group.members, Members::Cells { dim: of, .. } if of >= dim)
 }
 
 /// The sentence on cells that belong to no body.
-fn cells(source: &Source) -> Option<String> {
+fn cells(source: &SceneMesh) -> Option<String> {
     let (file, dim) = (source.file(), source.dim());
     let own = (0..file.cells.len()).filter(|&c| file.cells.kind(c).dim() == dim);
     let own: Vec<usize> = own.collect();
@@ -82,9 +82,9 @@ fn cells(source: &Source) -> Option<String> {
 fn groups(
     file: &MeshFile,
     named: &BTreeSet<&str>,
-    meant: impl Fn(&Group) -> bool,
+    meant: impl Fn(&MeshGroup) -> bool,
 ) -> Option<String> {
-    let size = |group: &Group| match &group.members {
+    let size = |group: &MeshGroup| match &group.members {
         Members::Cells { dim, cells } => {
             let what = match (dim, cells.len()) {
                 (3, 1) => "solid cell",
@@ -120,7 +120,7 @@ fn groups(
 }
 
 /// The sentence on the faces of a group that are on no boundary of a body: no load and no contact acts there.
-fn inside(file: &MeshFile, dim: usize, group: &Group, bodies: &[BodySpec]) -> Option<String> {
+fn inside(file: &MeshFile, dim: usize, group: &MeshGroup, bodies: &[BodySpec]) -> Option<String> {
     let Members::Cells { dim: of, cells } = &group.members else {
         return None;
     };
@@ -157,7 +157,7 @@ fn inside(file: &MeshFile, dim: usize, group: &Group, bodies: &[BodySpec]) -> Op
     })
 }
 
-impl<'s> Entries<'s> {
+impl<'s> SceneEntries<'s> {
     /// The groups on which something is given.
     fn held(&self) -> BTreeSet<&'s str> {
         let of_body = |body: &'s BodySpec| {
@@ -179,8 +179,8 @@ impl<'s> Entries<'s> {
         let contacts = self.contacts.iter().map(|c| (&c.pair, c.sides));
         for (pair, sides) in ties.chain(contacts) {
             match (pair, sides) {
-                (Pair::Surfaces(a, b), _) => out.extend([&a[..], &b[..]]),
-                (Pair::Named(a, b), Some(sides)) => {
+                (PairSelector::Surfaces(a, b), _) => out.extend([&a[..], &b[..]]),
+                (PairSelector::Named(a, b), Some(sides)) => {
                     for (name, side) in [a, b].into_iter().zip(sides) {
                         out.extend(self.side(name, side));
                     }

@@ -1,7 +1,7 @@
 //! Single values (numbers, texts, counts, sizes), each with a message for a value of the wrong kind.
 
-use super::document::{Item, Section, Value};
-use super::Reader;
+use super::document::{Item, TableSection, Value};
+use super::SceneReader;
 use crate::model::body::SIDES;
 use crate::model::expr::Expr;
 use base::Result;
@@ -23,7 +23,7 @@ impl Item<'_> {
     }
 }
 
-impl Reader {
+impl SceneReader {
     /// A number, or a constant expression such as "1/3".
     pub(super) fn number(&self, item: &Item) -> Result<f64> {
         match self.expression(item)?.as_constant() {
@@ -173,7 +173,7 @@ impl Reader {
     /// The results of `read` for the values of a table with some of the keys x, y (and z), by component.
     pub(super) fn by_axis<T>(
         &self,
-        section: &mut Section,
+        section: &mut TableSection,
         read: impl Fn(&Item) -> Result<T>,
     ) -> Result<[Option<T>; 3]> {
         let mut out = [const { None }; 3];

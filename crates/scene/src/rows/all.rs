@@ -5,9 +5,9 @@ use super::equations::{Chain, Equation};
 use super::mortar;
 use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
-use super::points::Point;
+use super::points::InterfacePoint;
 use crate::body::Body;
-use crate::geometry::interface::Interface;
+use crate::geometry::interface::BodyInterface;
 use crate::model::spec::SceneSpec;
 use crate::model::steps::{Factors, Steps};
 use crate::rows::equations;
@@ -16,8 +16,8 @@ use base::Result;
 use std::collections::HashSet;
 
 /// The rows, and sentences about them.
-pub(crate) struct Rows {
-    pub points: Vec<Point>,
+pub(crate) struct SceneRows {
+    pub points: Vec<InterfacePoint>,
     pub mortar: Vec<MortarRow>,
     pub equations: Vec<Equation>,
     pub notes: Vec<String>,
@@ -26,7 +26,7 @@ pub(crate) struct Rows {
 /// The data from which rows are made.
 pub(crate) struct Joined<'a> {
     pub spec: &'a SceneSpec,
-    pub interfaces: &'a mut [Interface],
+    pub interfaces: &'a mut [BodyInterface],
     pub obstacles: &'a [Obstacle],
     /// Rows between sides whose nodes do not match that are known already.
     pub known: Vec<MortarRow>,
@@ -45,11 +45,11 @@ impl Joined<'_> {
         bodies: &mut [Body],
         steps: &Option<Steps>,
         step: Option<usize>,
-    ) -> Result<Rows> {
+    ) -> Result<SceneRows> {
         let spec = self.spec;
         // Rows beside obstacles are added to points that are known.
         let beside: HashSet<usize> = self.obstacles.iter().map(|o| o.body).collect();
-        let wanted = |p: &Point| {
+        let wanted = |p: &InterfacePoint| {
             (self.owns)(p.subdomain) || p.members.iter().any(|m| beside.contains(&m.body))
         };
         let near =
@@ -84,7 +84,7 @@ impl Joined<'_> {
         });
         let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
         equations::join(bodies, &mut points, &mut chains);
-        Ok(Rows {
+        Ok(SceneRows {
             points,
             mortar,
             equations,

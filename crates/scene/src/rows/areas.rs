@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::checked::Scene;
-use crate::geometry::interface::Shape;
+use crate::geometry::interface::InterfaceShape;
 use fetifeti::problem::{BodyNode, RowSource};
 
 impl Scene {
@@ -21,7 +21,7 @@ impl Scene {
             RowSource::Interface(k) => {
                 let interface = &self.interfaces[k];
                 let which = interface.bodies.iter().position(|&b| b == body)?;
-                (interface.shape == Shape::Face).then_some(interface.sides[which])
+                (interface.shape == InterfaceShape::Face).then_some(interface.sides[which])
             }
         }
     }
@@ -36,8 +36,8 @@ impl Scene {
                 let interface = &self.interfaces[k];
                 let of = |k: usize| (interface.bodies[k], interface.sides[k]);
                 match interface.shape {
-                    Shape::Face => interface.order.map(of).to_vec(),
-                    Shape::Corner => Vec::new(),
+                    InterfaceShape::Face => interface.order.map(of).to_vec(),
+                    InterfaceShape::Corner => Vec::new(),
                 }
             }
         }

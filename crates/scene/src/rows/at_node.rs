@@ -1,13 +1,13 @@
 //! Properties of the node of a body in a scene.
 
-use super::points::Along;
+use super::points::DirectionalValue;
 use crate::body::Body;
 use fetifeti::problem::BodyNode;
 
 /// Properties of a node, as the `bodies` of a scene have them.
 pub trait AtNode {
     /// u along `direction` at this member.
-    fn along(&self, bodies: &[Body], direction: [f64; 3]) -> Along;
+    fn along(&self, bodies: &[Body], direction: [f64; 3]) -> DirectionalValue;
 
     /// The given value, if there is one.
     fn given(&self, bodies: &[Body], component: usize) -> Option<f64>;
@@ -23,8 +23,8 @@ pub trait AtNode {
 }
 
 impl AtNode for BodyNode {
-    fn along(&self, bodies: &[Body], direction: [f64; 3]) -> Along {
-        let mut out = Along {
+    fn along(&self, bodies: &[Body], direction: [f64; 3]) -> DirectionalValue {
+        let mut out = DirectionalValue {
             terms: Vec::new(),
             given: 0.0,
         };

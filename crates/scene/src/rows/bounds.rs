@@ -3,7 +3,7 @@
 use super::entry::both;
 use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
-use super::points::{Inequality, Point, PointRow};
+use super::points::{Inequality, InterfacePoint, PointRow};
 use crate::body::Body;
 use crate::model::profile::Limit;
 use crate::model::spec::SceneSpec;
@@ -51,7 +51,7 @@ impl<'a> Checks<'a> {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) if ties or given values violate an inequality, or if two bounds
     /// contradict each other.
-    pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
+    pub fn apply(&self, points: &mut Vec<InterfacePoint>) -> Result<()> {
         for point in points.iter_mut() {
             let mut rows = std::mem::take(&mut point.rows);
             let mut decided = Vec::with_capacity(rows.len());
@@ -70,7 +70,7 @@ impl<'a> Checks<'a> {
     }
 
     /// Whether ties or given values decide a row. Stores the given values on both sides of a contact.
-    fn is_decided(&self, point: &Point, row: &mut PointRow) -> Result<bool> {
+    fn is_decided(&self, point: &InterfacePoint, row: &mut PointRow) -> Result<bool> {
         let (Some(inequality), [Some(a), Some(b)]) = (&mut row.inequality, row.members) else {
             return Ok(false);
         };
@@ -170,7 +170,7 @@ impl<'a> Checks<'a> {
     }
 
     /// Adds a row at every free node beside an obstacle, in a new point if the node has none yet.
-    fn add_bounds(&self, points: &mut Vec<Point>) -> Result<()> {
+    fn add_bounds(&self, points: &mut Vec<InterfacePoint>) -> Result<()> {
         if self.obstacles.is_empty() {
             return Ok(());
         }
@@ -194,7 +194,7 @@ impl<'a> Checks<'a> {
                     continue;
                 }
                 let &mut (p, m) = index.entry(member).or_insert_with(|| {
-                    points.push(Point::of(vec![member], self.bodies));
+                    points.push(InterfacePoint::of(vec![member], self.bodies));
                     (points.len() - 1, 0)
                 });
                 let rows = &mut points[p].rows;
@@ -283,7 +283,7 @@ impl<'a> Checks<'a> {
     }
 
     /// Checks that the lower bound of a node does not lie above its upper bound.
-    fn check_between(&self, point: &Point) -> Result<()> {
+    fn check_between(&self, point: &InterfacePoint) -> Result<()> {
         let mut below: Option<&PointRow> = None;
         for row in &point.rows {
             let (Some(obstacle), [Some(m), _]) = (self.obstacle(row), row.members) else {

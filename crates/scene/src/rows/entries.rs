@@ -1,16 +1,16 @@
 //! The joints between touching bodies: the default, and the entries of [[tie]] and [[contact]].
 
-use super::entry::{both, some_names, Contact, Entry};
+use super::entry::{both, some_names, ContactData, Entry};
 use super::facing::facing;
 use super::left_out::LeftOut;
 use super::links::Links;
-use super::origin::Origin;
+use super::origin::SideOrigin;
 use super::unmatched::unmatched;
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Link, Shape};
-use crate::geometry::matching::Matching;
+use crate::geometry::interface::{BodyInterface, InterfaceShape, Link};
+use crate::geometry::matching::NodeMatching;
 use crate::geometry::touching::touching;
-use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
+use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::{ByDefault, SceneSpec};
 use crate::model::steps::{Factors, Steps};
@@ -19,12 +19,12 @@ use base::{Error, Result};
 use std::collections::{HashMap, HashSet};
 
 /// All pairs that touch, with their ties and contacts, and sentences on what the entries that name surfaces leave out.
-pub(crate) fn find(
+pub(crate) fn find_interfaces(
     bodies: &[Body],
-    mut matching: Matching<'_>,
-    (spec, origins): (&SceneSpec, &[Origin]),
+    mut matching: NodeMatching<'_>,
+    (spec, origins): (&SceneSpec, &[SideOrigin]),
     steps: &Option<Steps>,
-) -> Result<(Vec<Interface>, LeftOut)> {
+) -> Result<(Vec<BodyInterface>, LeftOut)> {
     let mut interfaces = touching(bodies)?;
     unmatched(bodies, &mut matching, spec, &mut interfaces);
     let far = facing(bodies, matching, spec, &mut interfaces)?;
@@ -36,8 +36,8 @@ pub(crate) fn find(
     let mut weak = Vec::new();
     for (k, interface) in interfaces.iter_mut().enumerate() {
         entries.apply(bodies, interface, default.as_ref(), Factors::last(steps))?;
-        let tied = |i: &Interface| i.shared.iter().any(|s| s.link == Link::Tied);
-        let is_corner = interface.shape == Shape::Corner;
+        let tied = |i: &BodyInterface| i.shared.iter().any(|s| s.link == Link::Tied);
+        let is_corner = interface.shape == InterfaceShape::Corner;
         if is_corner && tied(interface) && !entries.tie_names(interface.bodies) {
             weak.push(k);
         }
@@ -51,7 +51,7 @@ pub(crate) fn find(
 /// any more has none.
 pub(crate) fn rejoin(
     bodies: &[Body],
-    interfaces: &mut [Interface],
+    interfaces: &mut [BodyInterface],
     spec: &SceneSpec,
     steps: &Option<Steps>,
 ) -> Result<()> {
@@ -68,10 +68,10 @@ pub(crate) fn rejoin(
 /// The joint of bodies of which no entry speaks, with the gap 0.
 fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
     let default = Entry {
-        pair: &Pair::All,
+        pair: &PairSelector::All,
         extent: &Extent::All,
         location: None,
-        contact: (spec.default == ByDefault::Contact).then_some(Contact {
+        contact: (spec.default == ByDefault::Contact).then_some(ContactData {
             gap: zero,
             number: None,
         }),
@@ -82,7 +82,7 @@ fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
 
 /// Removes unwanted corner ties. The corner pairs in `weak` are tied only because an entry ties all pairs. If one of
 /// the two nodes is in contact elsewhere, the tie would close that contact and is removed.
-fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
+fn release_corners(interfaces: &mut [BodyInterface], weak: &[usize]) {
     if weak.is_empty() {
         return;
     }
@@ -93,7 +93,7 @@ fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
         }
     }
     for &k in weak {
-        let Interface { bodies, shared, .. } = &mut interfaces[k];
+        let BodyInterface { bodies, shared, .. } = &mut interfaces[k];
         for s in shared.iter_mut().filter(|s| s.link == Link::Tied) {
             if [0, 1]
                 .iter()
@@ -136,13 +136,13 @@ impl<'a> Entries<'a> {
         let ties = ties.iter().enumerate().map(|(k, spec)| Entry::tie(k, spec));
         for entry in ties.chain(contacts) {
             let (first, second) = match entry.pair {
-                Pair::All => {
+                PairSelector::All => {
                     entries.all.push((entry, false));
                     continue;
                 }
-                Pair::Named(first, second) => (first, second),
+                PairSelector::Named(first, second) => (first, second),
                 // Surfaces have been replaced by bodies and sides before.
-                Pair::Surfaces(..) => continue,
+                PairSelector::Surfaces(..) => continue,
             };
             let find = |name: &String| {
                 index.get(name.as_str()).copied().ok_or_else(|| {
@@ -180,7 +180,7 @@ impl<'a> Entries<'a> {
     fn apply(
         &mut self,
         bodies: &[Body],
-        interface: &mut Interface,
+        interface: &mut BodyInterface,
         default: Option<&Entry<'a>>,
         last: Factors<'_>,
     ) -> Result<()> {
@@ -223,7 +223,7 @@ impl<'a> Entries<'a> {
     }
 
     /// Checks that every entry found a pair that touches, and that an entry for all pairs selects at least one node.
-    fn check_used(&self, interfaces: &[Interface]) -> Result<()> {
+    fn check_used(&self, interfaces: &[BodyInterface]) -> Result<()> {
         let touching: HashSet<[usize; 2]> = interfaces.iter().map(|i| i.bodies).collect();
         let mut apart: Vec<&Entry<'_>> = self
             .named
@@ -233,7 +233,7 @@ impl<'a> Entries<'a> {
             .collect();
         apart.sort_by(|a, b| a.location.cmp(&b.location));
         if let Some(entry) = apart.first() {
-            let Pair::Named(a, b) = entry.pair else {
+            let PairSelector::Named(a, b) = entry.pair else {
                 unreachable!("only named pairs are in the map")
             };
             return Err(Error::input(format!(

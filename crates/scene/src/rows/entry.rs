@@ -1,25 +1,25 @@
 //! An entry of [[tie]] or [[contact]], and its name in messages.
 
 use crate::body::Body;
-use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
+use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use base::Location;
 
 /// One entry, a tie or a contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Entry<'a> {
-    pub pair: &'a Pair,
+    pub pair: &'a PairSelector,
     pub extent: &'a Extent,
     pub location: Option<&'a Location>,
     /// The data of a contact; `None`: a tie.
-    pub contact: Option<Contact<'a>>,
+    pub contact: Option<ContactData<'a>>,
     /// Its number, ties before contacts, if it names the sides: it applies to the interface of these sides only.
     pub own: Option<usize>,
 }
 
 /// The data of a contact beyond its nodes.
 #[derive(Clone, Copy)]
-pub(crate) struct Contact<'a> {
+pub(crate) struct ContactData<'a> {
     pub gap: &'a Profile,
     /// Number of the entry, `None` for the default.
     pub number: Option<usize>,
@@ -42,7 +42,7 @@ impl<'a> Entry<'a> {
             pair: &spec.pair,
             extent: &spec.extent,
             location: Some(&spec.location),
-            contact: Some(Contact {
+            contact: Some(ContactData {
                 gap: &spec.gap,
                 number: Some(number),
             }),

@@ -3,7 +3,7 @@
 use crate::rows::at_node::AtNode;
 use std::collections::HashMap;
 
-use super::points::Point;
+use super::points::InterfacePoint;
 use crate::body::Body;
 use crate::model::joints::EquationSpec;
 use crate::validate::agree;
@@ -94,7 +94,7 @@ pub(crate) struct Chain<'a> {
 }
 
 /// Gives rows with common degrees of freedom one block and one subdomain, the lowest of each.
-pub(crate) fn join(bodies: &[Body], points: &mut [Point], chains: &mut [Chain<'_>]) {
+pub(crate) fn join(bodies: &[Body], points: &mut [InterfacePoint], chains: &mut [Chain<'_>]) {
     if chains.is_empty() {
         return;
     }

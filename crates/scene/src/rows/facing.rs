@@ -2,11 +2,11 @@
 
 use crate::body::Body;
 use crate::geometry::facing::opposite;
-use crate::geometry::interface::Interface;
-use crate::geometry::matching::{apart, Matching, Mismatch};
-use crate::geometry::single::{has_lonely_nodes, Reached};
+use crate::geometry::interface::BodyInterface;
+use crate::geometry::matching::{apart, Mismatch, NodeMatching};
+use crate::geometry::single::{has_lonely_nodes, ReachedNodes};
 use crate::geometry::{mortar, overlap};
-use crate::model::joints::{Extent, Pair};
+use crate::model::joints::{Extent, PairSelector};
 use crate::model::spec::SceneSpec;
 use base::{Error, Location, Result};
 use fetifeti::problem::BodyNode;
@@ -16,11 +16,11 @@ use std::collections::{HashMap, HashSet};
 /// tolerance, by number, the nodes that lie farther away are returned.
 pub(super) fn facing(
     bodies: &[Body],
-    mut matching: Matching<'_>,
+    mut matching: NodeMatching<'_>,
     spec: &SceneSpec,
-    interfaces: &mut Vec<Interface>,
+    interfaces: &mut Vec<BodyInterface>,
 ) -> Result<Vec<(usize, Vec<BodyNode>)>> {
-    let ties = spec.ties.iter().map(|t| Named {
+    let ties = spec.ties.iter().map(|t| SideEntry {
         sides: t.sides,
         pair: &t.pair,
         which: t.multipliers.unwrap_or(0),
@@ -29,7 +29,7 @@ pub(super) fn facing(
         extent: &t.extent,
         location: &t.location,
     });
-    let contacts = spec.contacts.iter().map(|c| Named {
+    let contacts = spec.contacts.iter().map(|c| SideEntry {
         sides: c.sides,
         pair: &c.pair,
         which: c.multipliers.unwrap_or(0),
@@ -44,7 +44,7 @@ pub(super) fn facing(
     }
     let mut far = Vec::new();
     for (number, entry) in ties.chain(contacts).enumerate() {
-        let (Some(sides), Pair::Named(first, second)) = (entry.sides, entry.pair) else {
+        let (Some(sides), PairSelector::Named(first, second)) = (entry.sides, entry.pair) else {
             continue;
         };
         let find = |name: &String| numbers.get(name.as_str()).copied();
@@ -68,7 +68,7 @@ pub(super) fn facing(
         let matched = entry.matched(bodies, &mut matching, pair, sides);
         let mut interface = match *entry.extent {
             Extent::Within { distance, .. } if !is_contact => {
-                let reached = Reached::new(bodies, &spec.form, (pair, sides), which, distance);
+                let reached = ReachedNodes::new(bodies, &spec.form, (pair, sides), which, distance);
                 let of = |&node: &usize| BodyNode {
                     body: pair[which],
                     node,
@@ -85,7 +85,7 @@ pub(super) fn facing(
             // Nodes of no face have nothing to integrate over.
             Extent::Within { .. } if has_lonely_nodes(&bodies[pair[which]].spec, sides[which]) => {
                 let touching =
-                    Reached::touching(bodies, &spec.form, (pair, sides), which, entry.reach());
+                    ReachedNodes::touching(bodies, &spec.form, (pair, sides), which, entry.reach());
                 let found = touching.interface(bodies, &spec.form, (pair, sides), which);
                 match found {
                     Some(found) => found,
@@ -125,9 +125,9 @@ pub(super) fn facing(
 }
 
 /// An entry that may name sides.
-struct Named<'s> {
+struct SideEntry<'s> {
     sides: Option<[usize; 2]>,
-    pair: &'s Pair,
+    pair: &'s PairSelector,
     /// Which of its two bodies carries the multipliers.
     which: usize,
     /// Gaps up to this length count as touching, and those of these nodes of the first body.
@@ -138,12 +138,12 @@ struct Named<'s> {
 }
 
 /// Two bodies in increasing order, a side of each, and which of the two carries the multipliers.
-type Sides = ([usize; 2], [usize; 2], usize);
+type OrientedSides = ([usize; 2], [usize; 2], usize);
 
 /// The interface of nodes that lie opposite each other, or why there is none.
-type Matched = std::result::Result<Interface, String>;
+type Matched = std::result::Result<BodyInterface, String>;
 
-impl Named<'_> {
+impl SideEntry<'_> {
     fn error<T>(&self, why: &str) -> Result<T> {
         Err(Error::input(why).at(self.location))
     }
@@ -157,7 +157,7 @@ impl Named<'_> {
     fn matched(
         &self,
         bodies: &[Body],
-        matching: &mut Matching<'_>,
+        matching: &mut NodeMatching<'_>,
         pair: [usize; 2],
         sides: [usize; 2],
     ) -> Matched {
@@ -167,7 +167,7 @@ impl Named<'_> {
             ([Some(x), Some(y)], None) => match opposite(bodies, [x, y], pair, sides) {
                 Some(interface) => Ok(interface),
                 None => {
-                    let Pair::Named(a, b) = self.pair else {
+                    let PairSelector::Named(a, b) = self.pair else {
                         unreachable!("who names sides names bodies")
                     };
                     let who = if a == b {
@@ -191,11 +191,11 @@ impl Named<'_> {
     fn whole(
         &self,
         bodies: &[Body],
-        matching: &mut Matching<'_>,
+        matching: &mut NodeMatching<'_>,
         spec: &SceneSpec,
-        (pair, sides, which): Sides,
+        (pair, sides, which): OrientedSides,
         (matched, is_contact): (Matched, bool),
-    ) -> Result<Interface> {
+    ) -> Result<BodyInterface> {
         let other = match matched {
             Ok(found) if !is_contact || !mortar::is_for_contact(bodies, &found) => {
                 return Ok(found)
@@ -216,14 +216,14 @@ impl Named<'_> {
     fn within(
         &self,
         bodies: &[Body],
-        matching: &mut Matching<'_>,
+        matching: &mut NodeMatching<'_>,
         spec: &SceneSpec,
-        (pair, sides, which): Sides,
-        (matched, reached): (Matched, Reached),
-    ) -> Result<Interface> {
+        (pair, sides, which): OrientedSides,
+        (matched, reached): (Matched, ReachedNodes),
+    ) -> Result<BodyInterface> {
         let held = reached.nodes();
         if let Ok(mut found) = matched {
-            let meant = |i: &Interface| {
+            let meant = |i: &BodyInterface| {
                 i.shared
                     .iter()
                     .filter(|s| held.contains(&s.nodes[which]))

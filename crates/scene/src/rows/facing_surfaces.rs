@@ -17,7 +17,7 @@ use crate::model::rigid::Rigid;
 use crate::model::rigid_surface::RigidSurface;
 use base::linalg::vec3::{dot, minus, norm};
 use elements::form::Form;
-use elements::mortar::Face;
+use elements::mortar::MortarFace;
 use fetifeti::problem::{BodyNode, RowSource};
 
 /// The part of a rigid surface that lies opposite a side of a body.
@@ -67,7 +67,7 @@ impl Opposite {
 
 /// The part of a surface, which has moved by `way`, at a distance of `reach` at most, that lies opposite some nodes of
 /// a side; `None` if there is none. Distances are those from the surface as it is given.
-pub(super) fn find(
+pub(super) fn find_facing_surfaces(
     spec: &BodySpec,
     form: &Form,
     side: usize,
@@ -101,7 +101,7 @@ pub(super) fn find(
         (row.node, (distance, n.map(|v| 0.0 - v)))
     });
     let nearest: BTreeMap<usize, (f64, [f64; 3])> = nearest.collect();
-    let polygon = |face: &Face| {
+    let polygon = |face: &MortarFace| {
         let corners = &face.nodes[..face.kind.corners()];
         let at = |&k: &u32| rigid.side.points()[k as usize];
         corners.iter().map(at).collect()
@@ -176,7 +176,7 @@ pub(super) fn apart(
         rigid.name
     );
     let reversed = rigid.reversed();
-    if find(spec, form, side, (&reversed, [0.0; 3]), reach, nodes()).is_some() {
+    if find_facing_surfaces(spec, form, side, (&reversed, [0.0; 3]), reach, nodes()).is_some() {
         return format!(
             "{names} do not face each other: the normals of the surface point away from the body (`reverse = true`, or \
              faces with normals to the free side, were expected)"

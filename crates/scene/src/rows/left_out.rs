@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::origin::Origin;
+use super::origin::SideOrigin;
 use crate::body::Body;
-use crate::geometry::interface::Interface;
+use crate::geometry::interface::BodyInterface;
 use fetifeti::problem::BodyNode;
 
 /// Entries that have a sentence of their own.
@@ -23,22 +23,22 @@ pub(crate) struct LeftOut {
 /// other side but farther than the tolerance.
 pub(super) fn sentences(
     bodies: &[Body],
-    origins: &[Origin],
-    interfaces: &[Interface],
+    origins: &[SideOrigin],
+    interfaces: &[BodyInterface],
     far: &[(usize, Vec<BodyNode>)],
 ) -> LeftOut {
     let mut out = LeftOut::default();
     if origins.is_empty() {
         return out;
     }
-    let mut of_entry: HashMap<usize, Vec<&Interface>> = HashMap::new();
+    let mut of_entry: HashMap<usize, Vec<&BodyInterface>> = HashMap::new();
     for interface in interfaces {
         let Some(entry) = interface.entry else {
             continue;
         };
         of_entry.entry(entry).or_default().push(interface);
     }
-    let of_origin = |origin: &Origin| -> Vec<&Interface> {
+    let of_origin = |origin: &SideOrigin| -> Vec<&BodyInterface> {
         let own = origin.entries.clone();
         let own = own.flat_map(|entry| of_entry.get(&entry).into_iter().flatten());
         own.copied().collect()
@@ -67,8 +67,8 @@ pub(super) fn sentences(
 /// The sentence on a tie with a tolerance: how many nodes it does not hold.
 fn nodes(
     bodies: &[Body],
-    origin: &Origin,
-    interfaces: &[&Interface],
+    origin: &SideOrigin,
+    interfaces: &[&BodyInterface],
     far: &[(usize, Vec<BodyNode>)],
     tolerance: f64,
 ) -> Option<String> {
@@ -130,7 +130,7 @@ fn lie(n: usize) -> String {
 }
 
 /// The sentence on the nodes of a contact that count as touching though they do not.
-fn touching(origin: &Origin, interfaces: &[&Interface]) -> Option<String> {
+fn touching(origin: &SideOrigin, interfaces: &[&BodyInterface]) -> Option<String> {
     let ways = interfaces.iter();
     let ways = ways.flat_map(|i| i.adjusted.values().map(|way| way.abs()));
     let ways = ways.filter(|way| *way > 0.0);
@@ -146,7 +146,7 @@ fn touching(origin: &Origin, interfaces: &[&Interface]) -> Option<String> {
 }
 
 /// The sentence on a contact, or on a tie without a tolerance: how many faces have no partner.
-fn faces(bodies: &[Body], origin: &Origin, interfaces: &[&Interface]) -> Option<String> {
+fn faces(bodies: &[Body], origin: &SideOrigin, interfaces: &[&BodyInterface]) -> Option<String> {
     let mut facing: HashMap<(usize, usize), HashSet<usize>> = HashMap::new();
     for interface in interfaces {
         let mut touched = match interface.mortar.as_ref() {

@@ -1,9 +1,9 @@
 //! The links of one interface: the state of its nodes after all entries.
 
-use super::entry::{both, Contact, Entry};
+use super::entry::{both, ContactData, Entry};
 use super::select::{is_end, selected, Parameters};
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Link};
+use crate::geometry::interface::{BodyInterface, Link};
 use crate::model::joints::Extent;
 use crate::model::profile::{Limit, Limits};
 use crate::model::steps::Factors;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 /// The links of one interface while entries are added.
 pub(crate) struct Links<'i, 'b, 'e> {
     bodies: &'b [Body],
-    interface: &'i mut Interface,
+    interface: &'i mut BodyInterface,
     /// Number of entries that apply to the pair.
     pub entries: usize,
     /// The entry that ties each tied node.
@@ -25,7 +25,7 @@ pub(crate) struct Links<'i, 'b, 'e> {
 }
 
 impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
-    pub fn new(bodies: &'b [Body], interface: &'i mut Interface) -> Self {
+    pub fn new(bodies: &'b [Body], interface: &'i mut BodyInterface) -> Self {
         Links {
             bodies,
             interface,
@@ -116,8 +116,8 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         Ok(())
     }
 
-    fn gap(&self, entry: &Entry<'_>, contact: Contact<'_>, k: usize) -> Result<f64> {
-        let Interface {
+    fn gap(&self, entry: &Entry<'_>, contact: ContactData<'_>, k: usize) -> Result<f64> {
+        let BodyInterface {
             bodies,
             shared,
             order,
@@ -141,7 +141,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
     /// Marks the nodes in contact.
     pub fn finish(self, last: Factors<'_>) -> Result<()> {
         self.interface.limits = Limits::new(self.limits);
-        let Interface { limits, shared, .. } = self.interface;
+        let BodyInterface { limits, shared, .. } = self.interface;
         for same in limits.all().chunk_by(|a, b| a.node == b.node) {
             if let Some((gap, _)) = last.tightest(same) {
                 shared[same[0].node].link = Link::Contact { gap };

@@ -2,13 +2,13 @@
 
 use super::reach::Reach;
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Link};
+use crate::geometry::interface::{BodyInterface, Link};
 use base::linalg::union_find::UnionFind;
 use fetifeti::problem::BodyNode;
 
 /// Two members of a set that share a node of an interface.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct CoincidentMembers {
     /// Their places in the set.
     pub members: [usize; 2],
     /// The interface.
@@ -17,9 +17,9 @@ pub(super) struct Pair {
     pub node: usize,
 }
 
-impl Pair {
+impl CoincidentMembers {
     /// How the interface joins the two.
-    pub fn link(&self, interfaces: &[Interface]) -> Link {
+    pub fn link(&self, interfaces: &[BodyInterface]) -> Link {
         interfaces[self.interface].shared[self.node].link
     }
 }
@@ -29,14 +29,14 @@ pub(super) struct Meeting {
     /// The members of all sets; in a set by increasing body and node, sets by increasing first member.
     members: Vec<BodyNode>,
     /// The pairs of all sets, in the order of interfaces.
-    pairs: Vec<Found>,
+    pairs: Vec<NodePair>,
     /// The start of each set in `members` and in `pairs`, and the ends.
     starts: Vec<[u32; 2]>,
 }
 
 /// A pair of nodes, as numbers of nodes before they are sorted and as places in their set afterwards.
 #[derive(Debug, Clone, Copy, Default)]
-struct Found {
+struct NodePair {
     nodes: [u32; 2],
     interface: u32,
     node: u32,
@@ -47,7 +47,7 @@ const NONE: u32 = u32::MAX;
 
 impl Meeting {
     /// Groups the shared nodes that are reached, of all interfaces whose nodes match.
-    pub fn of(bodies: &[Body], interfaces: &[Interface], reach: &Reach) -> Meeting {
+    pub fn of(bodies: &[Body], interfaces: &[BodyInterface], reach: &Reach) -> Meeting {
         let (mut nodes, mut sets, found) = number(bodies, interfaces, reach);
         // Sets in the order of their first members.
         let roots: Vec<u32> = (0..nodes.len()).map(|id| sets.find(id) as u32).collect();
@@ -85,7 +85,7 @@ impl Meeting {
             ids[*free as usize] = id;
             *free += 1;
         }
-        let mut pairs = vec![Found::default(); found.len()];
+        let mut pairs = vec![NodePair::default(); found.len()];
         for pair in found {
             let free = &mut next[set_of(pair.nodes[0])][1];
             pairs[*free as usize] = pair;
@@ -111,14 +111,18 @@ impl Meeting {
     }
 
     /// The members and the pairs of each set.
-    pub fn sets(&self) -> impl Iterator<Item = (&[BodyNode], impl Iterator<Item = Pair> + '_)> {
+    pub fn sets(
+        &self,
+    ) -> impl Iterator<Item = (&[BodyNode], impl Iterator<Item = CoincidentMembers> + '_)> {
         self.starts.windows(2).map(|ends| {
             let [from, to] = [ends[0], ends[1]].map(|ends| ends.map(|end| end as usize));
-            let pairs = self.pairs[from[1]..to[1]].iter().map(|found| Pair {
-                members: found.nodes.map(|place| place as usize),
-                interface: found.interface as usize,
-                node: found.node as usize,
-            });
+            let pairs = self.pairs[from[1]..to[1]]
+                .iter()
+                .map(|found| CoincidentMembers {
+                    members: found.nodes.map(|place| place as usize),
+                    interface: found.interface as usize,
+                    node: found.node as usize,
+                });
             (&self.members[from[0]..to[0]], pairs)
         })
     }
@@ -127,9 +131,9 @@ impl Meeting {
 /// Numbers the shared nodes that are reached: the nodes by number, those that coincide in one set, and the pairs.
 fn number(
     bodies: &[Body],
-    interfaces: &[Interface],
+    interfaces: &[BodyInterface],
     reach: &Reach,
-) -> (Vec<BodyNode>, UnionFind, Vec<Found>) {
+) -> (Vec<BodyNode>, UnionFind, Vec<NodePair>) {
     let matching = || {
         let all = interfaces.iter().enumerate();
         let all = all.filter(|(_, i)| i.mortar.is_none() && !i.shared.is_empty());
@@ -139,7 +143,8 @@ fn number(
     let mut number: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
     let mut nodes: Vec<BodyNode> = Vec::new();
     let mut sets = UnionFind::default();
-    let mut pairs: Vec<Found> = Vec::with_capacity(matching().map(|(_, i)| i.shared.len()).sum());
+    let mut pairs: Vec<NodePair> =
+        Vec::with_capacity(matching().map(|(_, i)| i.shared.len()).sum());
     for (i, interface) in matching() {
         for body in interface.bodies {
             if number[body].is_empty() {
@@ -158,7 +163,7 @@ fn number(
                 *known
             });
             sets.join(ids[0] as usize, ids[1] as usize);
-            pairs.push(Found {
+            pairs.push(NodePair {
                 nodes: ids,
                 interface: i as u32,
                 node: k as u32,

@@ -5,9 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use super::bounds::Checks;
 use super::mortar_row::MortarRow;
-use super::points::{Inequality, Point};
+use super::points::{Inequality, InterfacePoint};
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Link};
+use crate::geometry::interface::{BodyInterface, Link};
 use crate::geometry::mortar_sides::{BodyRow, Surfaces};
 use base::linalg::vec3::dot;
 use base::Result;
@@ -19,8 +19,8 @@ use fetifeti::problem::{BodyNode, RowSource};
 pub(crate) fn collect(
     bodies: &[Body],
     form: &Form,
-    interfaces: &mut [Interface],
-    points: &[Point],
+    interfaces: &mut [BodyInterface],
+    points: &[InterfacePoint],
     checks: &Checks<'_>,
     known: Vec<MortarRow>,
 ) -> Result<(Vec<MortarRow>, Vec<String>)> {
@@ -115,7 +115,7 @@ fn merged(mut terms: Vec<(u64, f64)>) -> Vec<(u64, f64)> {
 }
 
 /// Nodes that are tied at a point.
-fn tied_at(points: &[Point]) -> HashSet<BodyNode> {
+fn tied_at(points: &[InterfacePoint]) -> HashSet<BodyNode> {
     let mut out = HashSet::new();
     for point in points {
         for (m, &to) in point.tied_to.iter().enumerate().filter(|(m, to)| m != *to) {
@@ -168,7 +168,7 @@ struct Pairing<'a> {
     bodies: &'a [Body],
     form: &'a Form,
     number: usize,
-    interface: &'a Interface,
+    interface: &'a BodyInterface,
     surfaces: &'a Surfaces,
     /// The body with the multipliers, 0 or 1, and the sign of its terms in a row.
     own: usize,
@@ -182,7 +182,7 @@ impl<'a> Pairing<'a> {
         bodies: &'a [Body],
         form: &'a Form,
         number: usize,
-        interface: &'a Interface,
+        interface: &'a BodyInterface,
         surfaces: &'a Surfaces,
     ) -> Pairing<'a> {
         let own = interface.mortar.as_ref().map_or(0, |m| m.multipliers);

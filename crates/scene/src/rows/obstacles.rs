@@ -116,7 +116,7 @@ impl Obstacle {
 
 /// The obstacles of a scene, by body, side and bound, where they stand; `first` is the number of the first obstacle
 /// entry.
-pub(crate) fn find(
+pub(crate) fn find_obstacles(
     bodies: &[Body],
     entries: &[ObstacleSpec],
     form: &Form,
@@ -124,7 +124,7 @@ pub(crate) fn find(
     standing: Standing<'_>,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
-    let mut found: BTreeMap<(usize, usize, usize, bool), Found> = BTreeMap::new();
+    let mut found: BTreeMap<(usize, usize, usize, bool), SideObstacleData> = BTreeMap::new();
     // Bodies that have moved may have left an obstacle.
     let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
@@ -162,9 +162,14 @@ pub(crate) fn find(
             let mut near = BTreeMap::new();
             if let Some(rigid) = &entry.surface {
                 let nodes = selected.iter().map(|s| s.0);
-                let Some(opposite) =
-                    facing_surfaces::find(spec, form, side, (rigid, way), entry.distance, nodes)
-                else {
+                let Some(opposite) = facing_surfaces::find_facing_surfaces(
+                    spec,
+                    form,
+                    side,
+                    (rigid, way),
+                    entry.distance,
+                    nodes,
+                ) else {
                     missed.get_or_insert((b, side));
                     continue;
                 };
@@ -256,7 +261,7 @@ pub(crate) fn find(
             return fail(why);
         }
     }
-    let named = |(key, of_side): ((usize, usize, usize, bool), Found)| {
+    let named = |(key, of_side): ((usize, usize, usize, bool), SideObstacleData)| {
         let surface = of_side.surface.as_ref().and_then(|s| s.name.as_ref());
         let (body, side, number, upper) = key;
         let what = match (number, upper) {
@@ -289,7 +294,7 @@ pub(crate) fn find(
 
 /// The data of the entries for the nodes of one side.
 #[derive(Default)]
-struct Found {
+struct SideObstacleData {
     surface: Option<Opposite>,
     limits: Vec<Limit>,
     nearest: BTreeMap<usize, (f64, [f64; 3])>,

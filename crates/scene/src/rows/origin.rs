@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::body::Body;
-use crate::model::joints::{ContactSpec, Extent, Pair, TieSpec};
+use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use base::Location;
 
 /// An entry that names sides.
-pub(crate) struct Origin {
+pub(crate) struct SideOrigin {
     /// The names in the entry: of two surfaces, or of sides of bodies.
     pub names: [String; 2],
     /// Where it was written, if it was.
@@ -29,28 +29,28 @@ pub(crate) struct Origin {
 }
 
 /// The bodies by their names.
-pub(crate) struct Names<'b> {
+pub(crate) struct BodyNames<'b> {
     bodies: &'b [Body],
     numbers: HashMap<&'b str, usize>,
 }
 
-impl<'b> Names<'b> {
-    pub fn of(bodies: &'b [Body]) -> Names<'b> {
+impl<'b> BodyNames<'b> {
+    pub fn of(bodies: &'b [Body]) -> BodyNames<'b> {
         let numbers = bodies.iter().enumerate();
-        Names {
+        BodyNames {
             numbers: numbers.map(|(k, b)| (b.spec.name.as_str(), k)).collect(),
             bodies,
         }
     }
 
     /// The names in a pair, and the bodies and sides that have each of them; `None` for a pair without sides.
-    fn find(&self, pair: &Pair, sides: Option<[usize; 2]>) -> Option<Found> {
+    fn find(&self, pair: &PairSelector, sides: Option<[usize; 2]>) -> Option<NamedSides> {
         match (pair, sides) {
-            (Pair::Surfaces(a, b), _) => Some((
+            (PairSelector::Surfaces(a, b), _) => Some((
                 [a.clone(), b.clone()],
                 [with(self.bodies, a), with(self.bodies, b)],
             )),
-            (Pair::Named(a, b), Some(sides)) => {
+            (PairSelector::Named(a, b), Some(sides)) => {
                 let of = |name: &String, side: usize| {
                     let body = *self.numbers.get(name.as_str())?;
                     let own = self.bodies[body].mesh().side_name(side);
@@ -65,18 +65,22 @@ impl<'b> Names<'b> {
 }
 
 /// Two names, and the bodies with the sides that have each.
-type Found = ([String; 2], [Vec<(usize, usize)>; 2]);
+type NamedSides = ([String; 2], [Vec<(usize, usize)>; 2]);
 
-impl Origin {
+impl SideOrigin {
     /// That of a tie which has become some entries.
-    pub fn of_tie(names: &Names<'_>, tie: &TieSpec, entries: Range<usize>) -> Option<Origin> {
+    pub fn of_tie(
+        names: &BodyNames<'_>,
+        tie: &TieSpec,
+        entries: Range<usize>,
+    ) -> Option<SideOrigin> {
         let (both, lists) = names.find(&tie.pair, tie.sides)?;
         let tolerance = match tie.extent {
             Extent::Within { distance, .. } => Some(distance),
             _ => None,
         };
         // Who ties a part of a face leaves out the rest.
-        (tolerance.is_some() || tie.extent == Extent::All).then(|| Origin {
+        (tolerance.is_some() || tie.extent == Extent::All).then(|| SideOrigin {
             names: both,
             location: tie.location.clone(),
             lists,
@@ -91,13 +95,13 @@ impl Origin {
 
     /// That of a contact.
     pub fn of_contact(
-        names: &Names<'_>,
+        names: &BodyNames<'_>,
         contact: &ContactSpec,
         entries: Range<usize>,
-    ) -> Option<Origin> {
+    ) -> Option<SideOrigin> {
         let (both, lists) = names.find(&contact.pair, contact.sides)?;
         let whole = matches!(contact.extent, Extent::All | Extent::Within { .. });
-        whole.then(|| Origin {
+        whole.then(|| SideOrigin {
             names: both,
             location: contact.location.clone(),
             lists,

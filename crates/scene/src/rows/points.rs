@@ -1,10 +1,10 @@
 //! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
 
 use super::entry::both;
-use super::meeting::{Meeting, Pair};
+use super::meeting::{CoincidentMembers, Meeting};
 use super::reach::Reach;
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Link, Shape};
+use crate::geometry::interface::{BodyInterface, InterfaceShape, Link};
 use crate::model::profile::Limit;
 use crate::model::steps::Factors;
 use crate::rows::at_node::AtNode;
@@ -15,7 +15,7 @@ use fetifeti::problem::{BodyNode, RowSource};
 
 /// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct InterfacePoint {
     /// Its number: the lowest body dof at the point, unique in the scene.
     pub block: u64,
     /// The subdomain of lowest index that contains the point; the rank that owns it provides the rows.
@@ -35,7 +35,7 @@ pub struct Point {
 /// pair that meets only in a corner has a row if ties connect it: the rows are fully redundant at cross points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointRow {
-    /// Indices a, b into [`Point::members`]. An equality has the lower index first, a contact the order of its
+    /// Indices a, b into [`InterfacePoint::members`]. An equality has the lower index first, a contact the order of its
     /// inequality; a row beside an obstacle has no b.
     pub members: [Option<usize>; 2],
     /// The unit vector along which u is taken: a component, or the normal out of a.
@@ -66,11 +66,11 @@ pub struct Inequality {
 /// to a given value are added to the given nodes of their body, at all points.
 pub(crate) fn collect(
     bodies: &mut [Body],
-    interfaces: &[Interface],
+    interfaces: &[BodyInterface],
     near: &dyn Fn(usize) -> bool,
-    wanted: &dyn Fn(&Point) -> bool,
-) -> Result<Vec<Point>> {
-    let mut out: Vec<Point> = Vec::new();
+    wanted: &dyn Fn(&InterfacePoint) -> bool,
+) -> Result<Vec<InterfacePoint>> {
+    let mut out: Vec<InterfacePoint> = Vec::new();
     let mut inherited = Vec::new();
     // A given value is passed on by a tie to a body that has it.
     let ties = (interfaces.iter()).any(|i| i.shared.iter().any(|s| s.link == Link::Tied));
@@ -79,8 +79,8 @@ pub(crate) fn collect(
     let reach = Reach::of(from, |b| bodies[b].mesh().n_nodes(), interfaces);
     let meeting = Meeting::of(bodies, interfaces, &reach);
     for (members, met) in meeting.sets() {
-        let mut point = Point::of(members.to_vec(), bodies);
-        let mut pairs: Vec<Pair> = met.collect();
+        let mut point = InterfacePoint::of(members.to_vec(), bodies);
+        let mut pairs: Vec<CoincidentMembers> = met.collect();
         point.tied_to = joined(members.len(), &pairs, interfaces, &|l| l == Link::Tied);
         let components = bodies[members[0].body].components;
         for c in 0..components {
@@ -99,7 +99,7 @@ pub(crate) fn collect(
     for body in bodies.iter_mut() {
         body.prescribed.sort_by_key(|&(dof, _)| dof);
     }
-    for Point { members, rows, .. } in &mut out {
+    for InterfacePoint { members, rows, .. } in &mut out {
         rows.retain(|row| {
             let ends = || row.members.iter().flatten().map(|&m| members[m]);
             let free = |m: BodyNode| !m.along(bodies, row.direction).terms.is_empty();
@@ -111,7 +111,7 @@ pub(crate) fn collect(
 
 /// u at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given
 /// terms.
-pub(crate) struct Along {
+pub(crate) struct DirectionalValue {
     pub terms: Vec<(u64, f64)>,
     pub given: f64,
 }
@@ -151,15 +151,15 @@ impl Inequality {
     }
 }
 
-impl Point {
+impl InterfacePoint {
     /// The point of these members, the lowest body first.
-    pub(crate) fn of(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
+    pub(crate) fn of(members: Vec<BodyNode>, bodies: &[Body]) -> InterfacePoint {
         let first = members[0];
         let body = &bodies[first.body];
         // A body that touches itself has several nodes at the point.
         let own = members.iter().filter(|m| m.body == first.body);
         let owner = own.map(|m| body.mesh().owner(m.node)).min();
-        Point {
+        InterfacePoint {
             block: first.dof(bodies, 0),
             subdomain: body.first_subdomain + owner.expect("a point has a node"),
             tied_to: (0..members.len()).collect(),
@@ -179,8 +179,8 @@ fn unit(c: usize) -> [f64; 3] {
 /// For each of `n` members the lowest one to which pairs lead whose links satisfy `counts`.
 fn joined(
     n: usize,
-    pairs: &[Pair],
-    interfaces: &[Interface],
+    pairs: &[CoincidentMembers],
+    interfaces: &[BodyInterface],
     counts: &dyn Fn(Link) -> bool,
 ) -> Vec<usize> {
     let mut sets = UnionFind::new(n);
@@ -191,7 +191,12 @@ fn joined(
 }
 
 /// Adds a row for each pair that gets one; contacts without effect are dropped later.
-fn add_rows(point: &mut Point, pairs: &mut [Pair], interfaces: &[Interface], components: usize) {
+fn add_rows(
+    point: &mut InterfacePoint,
+    pairs: &mut [CoincidentMembers],
+    interfaces: &[BodyInterface],
+    components: usize,
+) {
     let may_join = joined(point.members.len(), pairs, interfaces, &|l| {
         matches!(l, Link::Tied | Link::Open)
     });
@@ -200,7 +205,7 @@ fn add_rows(point: &mut Point, pairs: &mut [Pair], interfaces: &[Interface], com
         let interface = &interfaces[pair.interface];
         let (link, [a, b]) = (pair.link(interfaces), pair.members);
         let contact = link.is_contact();
-        let corner = interface.shape == Shape::Corner && !contact;
+        let corner = interface.shape == InterfaceShape::Corner && !contact;
         let by = |sets: &[usize]| corner && sets[a] == sets[b];
         let holds = link == Link::Tied || by(&point.tied_to) || contact;
         // If other faces tie the two members, an open row would be redundant.
@@ -234,7 +239,7 @@ fn add_rows(point: &mut Point, pairs: &mut [Pair], interfaces: &[Interface], com
 /// Adds a node to `inherited` if it is tied to a given value: the node is then given itself.
 fn prescribe(
     bodies: &[Body],
-    point: &Point,
+    point: &InterfacePoint,
     component: usize,
     inherited: &mut Vec<(BodyNode, usize, f64)>,
 ) -> Result<()> {

@@ -1,6 +1,6 @@
 //! The shared nodes at whose points some bodies have nodes: a rank groups those alone.
 
-use crate::geometry::interface::Interface;
+use crate::geometry::interface::BodyInterface;
 
 /// Nodes of some bodies, and all that coincide with one of them, by way of other nodes too.
 pub(super) struct Reach {
@@ -14,7 +14,11 @@ pub(super) struct Reach {
 
 impl Reach {
     /// The nodes that are reached from the bodies that are `whole`. `sizes` has the number of nodes of a body.
-    pub fn of(whole: Vec<bool>, sizes: impl Fn(usize) -> usize, interfaces: &[Interface]) -> Reach {
+    pub fn of(
+        whole: Vec<bool>,
+        sizes: impl Fn(usize) -> usize,
+        interfaces: &[BodyInterface],
+    ) -> Reach {
         let everywhere = whole.iter().all(|w| *w);
         let nodes = vec![Vec::new(); whole.len()];
         let mut reach = Reach {
@@ -57,7 +61,7 @@ impl Reach {
     }
 
     /// Whether it may have nodes of an interface.
-    pub fn touches(&self, interface: &Interface) -> bool {
+    pub fn touches(&self, interface: &BodyInterface) -> bool {
         let some = |body: usize| self.whole[body] || !self.nodes[body].is_empty();
         self.everywhere || interface.bodies.into_iter().any(some)
     }

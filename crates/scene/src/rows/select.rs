@@ -2,8 +2,8 @@
 
 use super::entry::Entry;
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Shape, TOLERANCE};
-use crate::model::joints::{Extent, Pair};
+use crate::geometry::interface::{BodyInterface, InterfaceShape, TOLERANCE};
+use crate::model::joints::{Extent, PairSelector};
 use base::{Error, Result};
 
 /// Tolerance of the parameter t at the ends of a range.
@@ -90,13 +90,13 @@ pub(crate) fn pick(extent: &Extent, t: &[[f64; 2]]) -> std::result::Result<Vec<u
 /// The nodes of `interface` (indices into `shared`) that `entry` selects.
 pub(crate) fn selected(
     bodies: &[Body],
-    interface: &Interface,
+    interface: &BodyInterface,
     entry: &Entry<'_>,
 ) -> Result<Vec<usize>> {
     let extent = entry.extent;
-    if interface.shape == Shape::Corner {
+    if interface.shape == InterfaceShape::Corner {
         // A contact of all pairs applies to faces only: a contact in a corner must name the pair.
-        let meant = entry.contact.is_none() || *entry.pair != Pair::All;
+        let meant = entry.contact.is_none() || *entry.pair != PairSelector::All;
         return Ok(if *extent == Extent::All && meant {
             (0..interface.shared.len()).collect()
         } else {
@@ -133,7 +133,7 @@ pub(crate) fn selected(
 
 fn unmatched(
     bodies: &[Body],
-    interface: &Interface,
+    interface: &BodyInterface,
     entry: &Entry<'_>,
     &(t, side, node): &([f64; 2], usize, usize),
 ) -> Error {

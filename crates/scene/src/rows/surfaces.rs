@@ -1,13 +1,13 @@
 //! Entries that name surfaces, and contacts that are found: both become entries that name bodies and their sides.
 
-use super::origin::{with, Names, Origin};
+use super::origin::{with, BodyNames, SideOrigin};
 use crate::body::Body;
 use crate::geometry::facing::is_face;
-use crate::geometry::interface::Interface;
-use crate::geometry::matching::{apart, Matching, Mismatch};
-use crate::geometry::single::Reached;
+use crate::geometry::interface::BodyInterface;
+use crate::geometry::matching::{apart, Mismatch, NodeMatching};
+use crate::geometry::single::ReachedNodes;
 use crate::geometry::sweep::{are_apart, extent, may_face, may_meet, near};
-use crate::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
+use crate::model::joints::{AutoContact, ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::SceneSpec;
 use base::linalg::vec3::{dot, minus};
@@ -30,15 +30,15 @@ const EQUAL: f64 = 1.05;
 /// were that name sides is returned.
 pub(crate) fn expand(
     bodies: &[Body],
-    matching: &mut Matching<'_>,
+    matching: &mut NodeMatching<'_>,
     spec: &mut SceneSpec,
-) -> Result<Vec<Origin>> {
-    let names = Names::of(bodies);
+) -> Result<Vec<SideOrigin>> {
+    let names = BodyNames::of(bodies);
     let mut origins = Vec::new();
     let mut ties = Vec::with_capacity(spec.ties.len());
     for tie in std::mem::take(&mut spec.ties) {
         match &tie.pair {
-            Pair::Surfaces(a, b) => {
+            PairSelector::Surfaces(a, b) => {
                 let (reach, tolerance) = match tie.extent {
                     Extent::Within { distance, .. } => (distance, Some(distance)),
                     _ => (tie.adjust.max(0.0), None),
@@ -52,7 +52,7 @@ pub(crate) fn expand(
                     &tie.location,
                 )?;
                 let entries = ties.len()..ties.len() + found.len();
-                origins.extend(Origin::of_tie(&names, &tie, entries));
+                origins.extend(SideOrigin::of_tie(&names, &tie, entries));
                 ties.extend(found.into_iter().map(|(pair, sides)| TieSpec {
                     pair,
                     sides: Some(sides),
@@ -60,7 +60,7 @@ pub(crate) fn expand(
                 }));
             }
             _ => {
-                origins.extend(Origin::of_tie(&names, &tie, ties.len()..ties.len() + 1));
+                origins.extend(SideOrigin::of_tie(&names, &tie, ties.len()..ties.len() + 1));
                 ties.push(tie);
             }
         }
@@ -69,7 +69,7 @@ pub(crate) fn expand(
     let mut contacts = Vec::with_capacity(spec.contacts.len());
     for contact in std::mem::take(&mut spec.contacts) {
         match &contact.pair {
-            Pair::Surfaces(a, b) => {
+            PairSelector::Surfaces(a, b) => {
                 let reach = contact.distance.unwrap_or(f64::INFINITY);
                 let found = pairs(
                     bodies,
@@ -81,7 +81,7 @@ pub(crate) fn expand(
                 )?;
                 let first = spec.ties.len() + contacts.len();
                 let entries = first..first + found.len();
-                origins.extend(Origin::of_contact(&names, &contact, entries));
+                origins.extend(SideOrigin::of_contact(&names, &contact, entries));
                 contacts.extend(found.into_iter().map(|(pair, sides)| ContactSpec {
                     pair,
                     sides: Some(sides),
@@ -90,7 +90,7 @@ pub(crate) fn expand(
             }
             _ => {
                 let first = spec.ties.len() + contacts.len();
-                origins.extend(Origin::of_contact(&names, &contact, first..first + 1));
+                origins.extend(SideOrigin::of_contact(&names, &contact, first..first + 1));
                 contacts.push(contact);
             }
         }
@@ -103,10 +103,14 @@ pub(crate) fn expand(
 }
 
 /// Does the same for the contacts alone, on bodies that have moved. Surfaces that do not meet any more are left out.
-pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec: &mut SceneSpec) {
+pub(crate) fn expand_contacts(
+    bodies: &[Body],
+    matching: &mut NodeMatching<'_>,
+    spec: &mut SceneSpec,
+) {
     let mut contacts = Vec::with_capacity(spec.contacts.len());
     for contact in std::mem::take(&mut spec.contacts) {
-        let Pair::Surfaces(a, b) = &contact.pair else {
+        let PairSelector::Surfaces(a, b) = &contact.pair else {
             contacts.push(contact);
             continue;
         };
@@ -138,18 +142,18 @@ pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec
     spec.contacts = contacts;
 }
 
-type Found = (Pair, [usize; 2]);
+type SelectedSurfaces = (PairSelector, [usize; 2]);
 
 /// The pairs of bodies that have the surfaces, and whose nodes there face each other, or are within a tolerance. A body
 /// that has both may touch itself.
 fn pairs(
     bodies: &[Body],
-    matching: &mut Matching<'_>,
+    matching: &mut NodeMatching<'_>,
     form: &Form,
     names: [&String; 2],
     (multipliers, reach, is_tolerance): (Option<usize>, f64, bool),
     location: &Location,
-) -> Result<Vec<Found>> {
+) -> Result<Vec<SelectedSurfaces>> {
     let lists = names.map(|name| with(bodies, name));
     let same = names[0] == names[1];
     let fits = |first: &(usize, usize), second: &(usize, usize)| {
@@ -176,7 +180,7 @@ fn pairs(
     };
     let found = |first: (usize, usize), second: (usize, usize)| {
         let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
-        (Pair::Named(a, b), [first.1, second.1])
+        (PairSelector::Named(a, b), [first.1, second.1])
     };
     let pairs = lists[0].iter().flat_map(|first| {
         let seconds = lists[1].iter().filter(move |second| fits(first, second));
@@ -202,7 +206,7 @@ fn pairs(
         let both = ([first.0, second.0], [first.1, second.1]);
         let which = multipliers.unwrap_or(0);
         if is_tolerance {
-            let reached = Reached::new(bodies, form, both, which, reach);
+            let reached = ReachedNodes::new(bodies, form, both, which, reach);
             out.extend((!reached.is_empty()).then(|| found(first, second)));
             continue;
         }
@@ -231,7 +235,7 @@ fn pairs(
 /// Contacts between all bodies whose sides are near each other.
 fn found(
     bodies: &[Body],
-    matching: &mut Matching<'_>,
+    matching: &mut NodeMatching<'_>,
     form: &Form,
     auto: &AutoContact,
 ) -> Result<Vec<ContactSpec>> {
@@ -271,7 +275,10 @@ fn found(
             };
             match interface {
                 Some(interface) if !is_no_pair(bodies, &interface) => out.push(ContactSpec {
-                    pair: Pair::Named(bodies[a].spec.name.clone(), bodies[b].spec.name.clone()),
+                    pair: PairSelector::Named(
+                        bodies[a].spec.name.clone(),
+                        bodies[b].spec.name.clone(),
+                    ),
                     sides: Some(sides),
                     extent: Extent::All,
                     gap: Profile::constant(0.0),
@@ -312,14 +319,14 @@ fn carrier([a, b]: [f64; 2], extents: [f64; 2]) -> usize {
 
 /// Whether two sides of one body, with edges of this length, seem to face each other through it, as those of a plate of
 /// one layer do.
-fn is_through(interface: &Interface, edge: f64) -> bool {
+fn is_through(interface: &BodyInterface, edge: f64) -> bool {
     let [a, b] = interface.bodies;
     a == b && interface.distances.iter().all(|d| *d < -THIN * edge)
 }
 
 /// Whether two sides, of which one at least is a box's, are no pair although some of their nodes face each other: they
 /// meet in a corner, or they are the far sides of two thin bodies, which seem to overlap by both thicknesses.
-fn is_no_pair(bodies: &[Body], interface: &Interface) -> bool {
+fn is_no_pair(bodies: &[Body], interface: &BodyInterface) -> bool {
     let both = interface.bodies.map(|b| &bodies[b]);
     if both.iter().all(|b| b.mesh().cells().is_some()) {
         return false;

@@ -3,7 +3,7 @@
 use super::areas::Areas;
 use super::equations::Equation;
 use super::mortar_row::MortarRow;
-use super::points::{Point, PointRow};
+use super::points::{InterfacePoint, PointRow};
 use super::rounding::Rounding;
 use crate::checked::Scene;
 use crate::model::steps::Factors;
@@ -30,7 +30,7 @@ impl Scene {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
         let rounding = Rounding::new(self);
-        let row = |(point, row): (&Point, &PointRow)| {
+        let row = |(point, row): (&InterfacePoint, &PointRow)| {
             let side = |m: usize| point.members[m].along(&self.bodies, row.direction).terms;
             let [a, b] = row.members.map(|m| m.map(side).unwrap_or_default());
             let minus = b.into_iter().map(|(dof, n)| (dof, -n));
@@ -108,7 +108,7 @@ impl Scene {
     pub(crate) fn each_row(
         &self,
         owns: impl Fn(usize) -> bool,
-    ) -> impl Iterator<Item = (&Point, &PointRow)> {
+    ) -> impl Iterator<Item = (&InterfacePoint, &PointRow)> {
         let points = self.points.iter().filter(move |p| owns(p.subdomain));
         points.flat_map(|point| point.rows.iter().map(move |row| (point, row)))
     }
@@ -145,7 +145,7 @@ impl Scene {
         }
     }
 
-    fn label(&self, point: &Point, row: &PointRow, areas: &mut Areas<'_>) -> RowLabel {
+    fn label(&self, point: &InterfacePoint, row: &PointRow, areas: &mut Areas<'_>) -> RowLabel {
         let members = row.members.map(|m| m.map(|m| point.members[m]));
         let first = members[0].expect("every row has a first member");
         RowLabel::new(row.source, members)

@@ -3,7 +3,7 @@
 
 use super::equations::Equation;
 use super::mortar_row::MortarRow;
-use super::points::{Point, PointRow};
+use super::points::{InterfacePoint, PointRow};
 use crate::checked::Scene;
 use fetifeti::problem::BodyNode;
 
@@ -33,7 +33,7 @@ impl Scene {
         at_points.chain(equations).chain(mortar)
     }
 
-    fn at_point(&self, point: &Point, row: &PointRow) -> RowTerms {
+    fn at_point(&self, point: &InterfacePoint, row: &PointRow) -> RowTerms {
         let along = self.components_of(row.direction);
         let members = row.members.into_iter().zip([1.0, -1.0]);
         let term =

@@ -2,10 +2,10 @@
 
 use super::surfaces::{shortest, NEAR};
 use crate::body::Body;
-use crate::geometry::interface::{Interface, Shape};
-use crate::geometry::matching::{Matching, Mismatch};
+use crate::geometry::interface::{BodyInterface, InterfaceShape};
+use crate::geometry::matching::{Mismatch, NodeMatching};
 use crate::geometry::mortar;
-use crate::model::joints::{Extent, Pair};
+use crate::model::joints::{Extent, PairSelector};
 use crate::model::spec::{ByDefault, SceneSpec};
 use std::collections::HashMap;
 
@@ -13,9 +13,9 @@ use std::collections::HashMap;
 /// a range; single nodes have to match.
 pub(super) fn unmatched(
     bodies: &[Body],
-    matching: &mut Matching<'_>,
+    matching: &mut NodeMatching<'_>,
     spec: &SceneSpec,
-    interfaces: &mut [Interface],
+    interfaces: &mut [BodyInterface],
 ) {
     let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
     let ties = spec.ties.iter();
@@ -29,19 +29,19 @@ pub(super) fn unmatched(
         let entry = (number, pair, which, extent);
         match pair {
             _ if sides.is_some() => {}
-            Pair::All => of_all.push(entry),
-            Pair::Named(a, b) => of_names.entry(in_order(a, b)).or_default().push(entry),
-            Pair::Surfaces(..) => {}
+            PairSelector::All => of_all.push(entry),
+            PairSelector::Named(a, b) => of_names.entry(in_order(a, b)).or_default().push(entry),
+            PairSelector::Surfaces(..) => {}
         }
     }
     for interface in interfaces {
         let names = interface.bodies.map(|k| &bodies[k].spec.name);
         let [a, b] = names;
         // Which body the entry says, in the order of the pair; `None`: the entry is of another pair.
-        let meant = |pair: &Pair, which: Option<usize>| match pair {
-            Pair::All => Some(which.unwrap_or(0)),
-            Pair::Named(x, y) if x == a && y == b => Some(which.unwrap_or(0)),
-            Pair::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
+        let meant = |pair: &PairSelector, which: Option<usize>| match pair {
+            PairSelector::All => Some(which.unwrap_or(0)),
+            PairSelector::Named(x, y) if x == a && y == b => Some(which.unwrap_or(0)),
+            PairSelector::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
             _ => None,
         };
         let mut which = None;
@@ -55,7 +55,7 @@ pub(super) fn unmatched(
             };
             single |= !whole(extent) && *extent != Extent::None;
             contact |= number >= spec.ties.len();
-            if which.is_none() || *pair != Pair::All {
+            if which.is_none() || *pair != PairSelector::All {
                 which = Some(found);
             }
         }
@@ -85,9 +85,13 @@ fn in_order<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
 }
 
 /// How far apart the sides of a common face with nodes that do not match may be; `None` for other interfaces.
-fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) -> Option<f64> {
+fn loose(
+    bodies: &[Body],
+    matching: &mut NodeMatching<'_>,
+    interface: &BodyInterface,
+) -> Option<f64> {
     if !interface.unmatched.is_empty() {
-        return (interface.shape == Shape::Face).then_some(f64::INFINITY);
+        return (interface.shape == InterfaceShape::Face).then_some(f64::INFINITY);
     }
     let (pair, sides) = (interface.bodies, interface.sides);
     let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.is_straight();
@@ -102,7 +106,7 @@ fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) ->
 }
 
 /// How far apart sides may be that touch: a part of their shortest edge.
-fn near(matching: &mut Matching<'_>, interface: &Interface) -> f64 {
+fn near(matching: &mut NodeMatching<'_>, interface: &BodyInterface) -> f64 {
     let mut edge = |k: usize| {
         let surface = matching.surface(interface.bodies[k], interface.sides[k]);
         shortest(&surface.edges)

@@ -29,7 +29,7 @@ fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
         body: 0,
         dim: 2,
         form: Form::default(),
-        elements: Elements::Grid(Grid {
+        elements: SubdomainElements::Grid(Grid {
             elements,
             step: Some(step),
         }),

@@ -18,7 +18,7 @@ fn strip(as_cells: bool) -> SubdomainMesh {
             },
             ..Form::default()
         },
-        elements: Elements::Grid(Grid {
+        elements: SubdomainElements::Grid(Grid {
             elements: [2, 1, 0],
             step: Some([1.0, 1.0, 0.0]),
         }),
@@ -35,7 +35,7 @@ fn strip(as_cells: bool) -> SubdomainMesh {
     if as_cells {
         let cells = mesh.cells().into_owned();
         assert!(cells.iter().all(|(kind, _)| kind == CellKind::Quad4));
-        mesh.elements = Elements::Cells(cells);
+        mesh.elements = SubdomainElements::Cells(cells);
     }
     mesh
 }

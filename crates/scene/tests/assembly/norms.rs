@@ -11,7 +11,7 @@ fn norms_of_a_known_difference() {
         body: 0,
         dim: 2,
         form: Form::default(),
-        elements: Elements::Grid(Grid {
+        elements: SubdomainElements::Grid(Grid {
             elements: [2, 1, 0],
             step: Some([1.0, 1.0, 0.0]),
         }),

@@ -76,7 +76,7 @@ fn simplices(dim: usize, n: usize) -> SubdomainMesh {
         form,
         rho: vec![2.0; cells.len()],
         poisson: vec![0.3; cells.len()],
-        elements: Elements::Cells(cells),
+        elements: SubdomainElements::Cells(cells),
         dof: (0..(dim * points.len()) as u32).collect(),
         prescribed: vec![0.0; dim * points.len()],
         points,
@@ -112,7 +112,7 @@ fn errors(
         .iter()
         .flat_map(|&p| u(p)[..mesh.dim].to_vec())
         .collect();
-    let mut sums = vec![Sum::default(); mesh.points.len()];
+    let mut sums = vec![NodalStressSum::default(); mesh.points.len()];
     let cells = mesh.cells();
     let mut total = 0.0;
     for_each_cell(mesh, &nodal, |e, volume, at| {
@@ -189,10 +189,10 @@ fn sums_are_means_by_weight() {
         strain: [s; 6],
         stress: [2.0 * s; 6],
     };
-    let (mut one, mut other) = (Sum::default(), Sum::default());
+    let (mut one, mut other) = (NodalStressSum::default(), NodalStressSum::default());
     one.add(1.0, &node(4.0));
     other.add(3.0, &node(8.0));
     one.merge(&other);
     assert_eq!(one.mean(), node(7.0));
-    assert_eq!(Sum::default().mean(), NodeStress::default());
+    assert_eq!(NodalStressSum::default().mean(), NodeStress::default());
 }

@@ -1,7 +1,7 @@
 //! Unit tests of `crates/scene/src/geometry/sweep.rs`.
 
 use super::*;
-use crate::geometry::matching::{Matching, Mismatch};
+use crate::geometry::matching::{Mismatch, NodeMatching};
 use crate::Scene;
 
 /// A wall of boxes with cells of second order, which are meshes of cells, and two rings that touch beside it.
@@ -44,7 +44,7 @@ load = 1
 fn looked_at(text: &str, names: [&str; 2], reach: f64) -> [usize; 2] {
     let scene = Scene::parse("sweep.toml", text).expect("a scene");
     let bodies = &scene.bodies;
-    let mut matching = Matching::new(bodies);
+    let mut matching = NodeMatching::new(bodies);
     let sides = names.map(|name| {
         let side = |b: &Body| b.mesh().side_of_name(name).expect("a side");
         bodies.iter().map(side).collect::<Vec<usize>>()

@@ -19,7 +19,7 @@ fn as_many_cells_as_elements_are_one_to_one() {
 #[test]
 fn a_grid_of_bodies_shares_the_cells() {
     let values: Vec<f64> = (1..=24).map(f64::from).collect();
-    let cells = Cells::new("c", [6, 4, 1], values.clone()).unwrap();
+    let cells = CellGrid::new("c", [6, 4, 1], values.clone()).unwrap();
     let cells = cells.over([3, 2, 1]);
     let mesh = BoxMesh::plane([0.0; 2], [1.0; 2], [2, 2], [2, 1]);
     let mut seen = vec![0.0; 24];
@@ -45,7 +45,7 @@ fn a_nan_is_not_forgotten() {
     for v in [[f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0]] {
         assert!(range(&v)[0].is_nan() && range(&v)[1].is_nan());
     }
-    let cells = Cells::new("c", [3, 1, 1], vec![1.0, f64::NAN, 2.0]).unwrap();
+    let cells = CellGrid::new("c", [3, 1, 1], vec![1.0, f64::NAN, 2.0]).unwrap();
     let (value, named) = cells.find(|v| v.is_nan()).unwrap().unwrap();
     assert!(value.is_nan());
     assert_eq!(named, "cell (1, 0) of 3 x 1 in c");

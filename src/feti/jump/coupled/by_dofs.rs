@@ -14,8 +14,8 @@
 
 use std::sync::Arc;
 
-use super::elimination::Solved;
-use super::pattern::{compressed, product, product_pattern, transposed, Matrices, FAINT};
+use super::elimination::GeneralSolution;
+use super::pattern::{compressed, product, product_pattern, transposed, JumpMatrices, FAINT};
 use crate::feti::jump::coupled::elimination;
 use base::linalg::csr::Csr;
 use cholesky::multifrontal::PartialCholesky;
@@ -46,7 +46,7 @@ pub struct ByDofs {
 
 impl ByDofs {
     /// The operator for these rows. `None` if too many rows without own dofs meet.
-    pub fn new(b: &Matrices, weights: &[f64], kept: &[bool]) -> Option<ByDofs> {
+    pub fn new(b: &JumpMatrices, weights: &[f64], kept: &[bool]) -> Option<ByDofs> {
         let n_dofs = b.columns.n();
         let rows = || (0..kept.len()).filter(|&r| kept[r]);
         let mut users = vec![0u32; n_dofs];
@@ -84,7 +84,7 @@ impl ByDofs {
         };
         let (own, m) = (part(&with_own, true), part(&with_own, false));
         let of_shared: Vec<f64> = shared.iter().map(|&j| weights[j as usize]).collect();
-        let Solved { t, l } = elimination::solve(&part(&others, false), &of_shared)?;
+        let GeneralSolution { t, l } = elimination::solve(&part(&others, false), &of_shared)?;
         let inverse: Vec<f64> = weights.iter().map(|w| 1.0 / w).collect();
         let softness = |i: usize| -> f64 {
             let (col, val) = own.row(i);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::pattern::{product, product_pattern, Matrices};
+use super::pattern::{product, product_pattern, JumpMatrices};
 use base::linalg::csr::Csr;
 use cholesky::multifrontal::PartialCholesky;
 use cholesky::symbolic::Symbolic;
@@ -22,7 +22,7 @@ pub struct ByRows {
 
 impl ByRows {
     /// Orders the rows.
-    pub fn new(b: &Matrices, weights: &[f64]) -> ByRows {
+    pub fn new(b: &JumpMatrices, weights: &[f64]) -> ByRows {
         let gram = product_pattern(&b.rows, &b.columns);
         ByRows {
             inverse: weights.iter().map(|w| 1.0 / w).collect(),
@@ -35,7 +35,7 @@ impl ByRows {
 
     /// Factors G over these rows, without those that have a pivot below `least`, relative to their diagonal entries.
     /// Returns these.
-    pub fn hold(&mut self, b: &Matrices, on: &[bool], least: f64) -> Vec<u32> {
+    pub fn hold(&mut self, b: &JumpMatrices, on: &[bool], least: f64) -> Vec<u32> {
         let Self { gram, inverse, .. } = self;
         product(gram, &b.rows, &b.columns, inverse, on);
         let (factor, left) = PartialCholesky::semidefinite(gram, self.symbolic.clone(), least);
@@ -55,7 +55,7 @@ impl ByRows {
     }
 
     /// v ← B_Dᵀ λ = D⁻¹ Bᵀ G⁻¹ λ.
-    pub fn lift(&self, b: &Matrices, lambda: &[f64], v: &mut [f64]) {
+    pub fn lift(&self, b: &JumpMatrices, lambda: &[f64], v: &mut [f64]) {
         let mut x = lambda.to_vec();
         self.solve(&mut x);
         v.fill(0.0);
@@ -64,7 +64,7 @@ impl ByRows {
     }
 
     /// λ ← B_D y = G⁻¹ B D⁻¹ y.
-    pub fn collect(&self, b: &Matrices, y: &[f64], lambda: &mut [f64]) {
+    pub fn collect(&self, b: &JumpMatrices, y: &[f64], lambda: &mut [f64]) {
         let y: Vec<f64> = y.iter().zip(&self.inverse).map(|(y, d)| y * d).collect();
         lambda.fill(0.0);
         b.rows.add_mul(1.0, &y, lambda);

@@ -8,7 +8,7 @@
 //! rows are independent by their pattern, and then nothing has to be computed.
 
 use super::by_rows::ByRows;
-use super::pattern::{Matrices, FAINT};
+use super::pattern::{JumpMatrices, FAINT};
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
@@ -30,7 +30,7 @@ pub struct Dependencies {
 impl Dependencies {
     /// The dependencies among the rows in `on`, and the rows that are left out of a set of independent ones; `None` if
     /// the rows are independent.
-    pub fn new(b: &Matrices, on: &[bool]) -> Option<(Dependencies, Vec<u32>)> {
+    pub fn new(b: &JumpMatrices, on: &[bool]) -> Option<(Dependencies, Vec<u32>)> {
         let held = peeled(b, on);
         if !held.contains(&true) {
             return None;
@@ -88,8 +88,8 @@ impl Dependencies {
 
 /// `on` without rows that have a dof that no other row in `on` has, again and again until there are none: all that may
 /// depend on each other by the pattern of B.
-fn peeled(b: &Matrices, on: &[bool]) -> Vec<bool> {
-    let Matrices { rows, columns } = b;
+fn peeled(b: &JumpMatrices, on: &[bool]) -> Vec<bool> {
+    let JumpMatrices { rows, columns } = b;
     let mut held = on.to_vec();
     let users = |j| columns.row(j).0.iter().filter(|&&r| on[r as usize]).count();
     let mut users: Vec<usize> = (0..columns.n()).map(users).collect();

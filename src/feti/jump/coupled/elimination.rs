@@ -12,7 +12,7 @@ const MEETING: usize = 300;
 const LARGE: f64 = 0.25;
 
 /// The general solution.
-pub struct Solved {
+pub struct GeneralSolution {
     /// On (dofs, free dofs).
     pub t: Csr,
     /// On (dofs, rows).
@@ -20,7 +20,7 @@ pub struct Solved {
 }
 
 /// Solves independent rows `b` on dofs with these weights. `None` if too many rows meet.
-pub fn solve(b: &Csr, weights: &[f64]) -> Option<Solved> {
+pub fn solve(b: &Csr, weights: &[f64]) -> Option<GeneralSolution> {
     let n = weights.len();
     let mut l: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
     // Of each dof that is solved for: the others in its equation.
@@ -65,7 +65,7 @@ pub fn solve(b: &Csr, weights: &[f64]) -> Option<Solved> {
             Some(terms) => terms.iter().map(|t| (free[t.0 as usize], t.1)).collect(),
         })
         .collect();
-    Some(Solved {
+    Some(GeneralSolution {
         t: compressed(&t),
         l: compressed(&l),
     })

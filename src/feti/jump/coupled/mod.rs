@@ -16,7 +16,7 @@ use base::linalg::sorted::distinct;
 use by_dofs::ByDofs;
 use by_rows::ByRows;
 use dependencies::Dependencies;
-use pattern::Matrices;
+use pattern::JumpMatrices;
 
 /// A block with more rows than this is coupled. At most 28 rows meet at a point where eight bodies do, and a dense
 /// block of 48 rows takes about a millisecond.
@@ -33,7 +33,7 @@ const DEPENDENT: usize = 200;
 /// The rows of a coupled block.
 #[derive(Debug)]
 pub struct Coupled {
-    b: Matrices,
+    b: JumpMatrices,
     /// D.
     weights: Vec<f64>,
     /// Whether G would cost digits.
@@ -51,7 +51,7 @@ impl Coupled {
     pub fn new(rows: &[Vec<(u32, f64)>], weights: &[f64]) -> Coupled {
         let rows = pattern::compressed(rows);
         let columns = pattern::transposed(&rows, weights.len());
-        let b = Matrices { rows, columns };
+        let b = JumpMatrices { rows, columns };
         Coupled {
             steep: (0..b.rows.n()).any(|r| is_steep(&b, weights, r)),
             weights: weights.to_vec(),
@@ -200,7 +200,7 @@ impl Coupled {
 
 /// Whether the dofs that row `r` shares with others are much softer than its own ones, or, if it has none, than each
 /// other.
-fn is_steep(b: &Matrices, weights: &[f64], r: usize) -> bool {
+fn is_steep(b: &JumpMatrices, weights: &[f64], r: usize) -> bool {
     let (col, val) = b.rows.row(r);
     // Σ coefficient² / D over dofs that the row has for itself, and over the others.
     let mut softness = [0.0; 2];
@@ -215,27 +215,27 @@ fn is_steep(b: &Matrices, weights: &[f64], r: usize) -> bool {
 
 /// How far weights may differ: up to `plain` as they do, beyond by `margin` times the root of their ratio, at most by
 /// `most`.
-struct Reach {
+struct WeightRange {
     plain: f64,
     margin: f64,
     most: f64,
 }
 
 /// With G: digits that it loses are lost in λ_min.
-const IN_G: Reach = Reach {
+const IN_G: WeightRange = WeightRange {
     plain: 1e6,
     margin: 1.0,
     most: 1e12,
 };
 
 /// Without G: what is lost is symmetry of B_D and B_Dᵀ. κ grows by 1/margin².
-const IN_A: Reach = Reach {
+const IN_A: WeightRange = WeightRange {
     plain: 1e8,
     margin: 30.0,
     most: f64::INFINITY,
 };
 
-impl Reach {
+impl WeightRange {
     /// D with ratios within reach. B_Dᵀ is a right inverse of B with any positive D, and powers of D with an exponent
     /// of at least one half keep κ bounded, whatever D is.
     fn weights(&self, weights: &[f64]) -> Vec<f64> {

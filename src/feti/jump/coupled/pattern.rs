@@ -7,7 +7,7 @@ pub const FAINT: f64 = 1e-3;
 
 /// B by rows and by columns.
 #[derive(Debug)]
-pub struct Matrices {
+pub struct JumpMatrices {
     /// B.
     pub rows: Csr,
     /// Bᵀ.

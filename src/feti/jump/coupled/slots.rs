@@ -20,7 +20,7 @@ pub struct Slots {
 }
 
 /// (Index among the ghosts, local dof) of the dofs in coupled blocks that a subdomain has.
-pub type Places = Vec<(u32, u32)>;
+pub type CoupledDofs = Vec<(u32, u32)>;
 
 impl Slots {
     /// Tells the subdomains which of their dofs are in coupled blocks. Also returns these places for each local
@@ -30,8 +30,8 @@ impl Slots {
         blocks: &[Block],
         locations: &Locations,
         subdomains: &[u32],
-    ) -> (Slots, Vec<Places>) {
-        let mut places: Vec<Places> = vec![Vec::new(); subdomains.len()];
+    ) -> (Slots, Vec<CoupledDofs>) {
+        let mut places: Vec<CoupledDofs> = vec![Vec::new(); subdomains.len()];
         let n_owned = blocks.iter().map(|b| b.slots.len()).sum();
         if !any(comm, n_owned > 0) {
             return (Slots::default(), places);

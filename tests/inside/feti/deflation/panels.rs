@@ -2,15 +2,15 @@
 
 use super::*;
 
-fn column(entries: &[(u32, f64)], reach: &[u32]) -> Column {
-    Column {
+fn column(entries: &[(u32, f64)], reach: &[u32]) -> MultiplierColumn {
+    MultiplierColumn {
         entries: entries.to_vec(),
         reach: reach.to_vec(),
     }
 }
 
 /// The same matrix, entry by entry.
-fn dense(n: usize, columns: &[Column]) -> Dense {
+fn dense(n: usize, columns: &[MultiplierColumn]) -> Dense {
     let mut out = Dense::zeros(n, columns.len());
     for (c, column) in columns.iter().enumerate() {
         for &(row, value) in &column.entries {

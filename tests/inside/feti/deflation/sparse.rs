@@ -1,23 +1,23 @@
 //! Unit tests of `src/feti/deflation/sparse.rs`.
 
 use super::*;
-use crate::feti::projector::sweep::Column;
+use crate::feti::projector::sweep::MultiplierColumn;
 use crate::matrices::random;
 use crate::testing::with_session;
 use base::linalg::semidefinite::Semidefinite;
 
 /// Bodies in a line, three columns each on the rows of the body and of its neighbours; every tenth body repeats a
 /// column of the body before it.
-fn columns(bodies: usize, rows_of_body: usize) -> Vec<Column> {
+fn columns(bodies: usize, rows_of_body: usize) -> Vec<MultiplierColumn> {
     let draw = random(bodies * 9 * rows_of_body, 5);
-    let mut out: Vec<Column> = Vec::new();
+    let mut out: Vec<MultiplierColumn> = Vec::new();
     for body in 0..bodies {
         let (low, high) = (body.saturating_sub(1), (body + 2).min(bodies));
         let rows = low * rows_of_body..high * rows_of_body;
         for c in 0..3 {
             let values = &draw[(3 * body + c) * 3 * rows_of_body..];
             let entries = rows.clone().zip(values).map(|(r, v)| (r as u32, *v));
-            out.push(Column {
+            out.push(MultiplierColumn {
                 entries: if body % 10 == 9 && c == 0 {
                     out[3 * body - 1].entries.clone()
                 } else {
@@ -36,7 +36,7 @@ fn a_sparse_factor_solves_as_the_dense_one_does() {
         let w = columns(80, 4);
         // F is diagonal, with weights over six orders.
         let weight = |row: u32| 10f64.powi((row % 7) as i32 - 3);
-        let image = |column: &Column| Column {
+        let image = |column: &MultiplierColumn| MultiplierColumn {
             entries: column
                 .entries
                 .iter()
@@ -44,7 +44,7 @@ fn a_sparse_factor_solves_as_the_dense_one_does() {
                 .collect(),
             reach: column.reach.clone(),
         };
-        let fw: Vec<Column> = w.iter().map(image).collect();
+        let fw: Vec<MultiplierColumn> = w.iter().map(image).collect();
         let (pw, pf) = (Panels::new(&w), Panels::new(&fw));
         let (shape, e) = product(session.comm(), [&pw, &pf], None, None);
         let n = w.len();

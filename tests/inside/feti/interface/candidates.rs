@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn what_comes_twice_passes_and_little_else() {
     let n = 50_000u64;
-    let mut table = Table::new(2 * n as usize);
+    let mut table = HashTable::new(2 * n as usize);
     let first = (0..n).map(|i| 7 * i);
     let second = (0..n).map(|i| 7 * (i + n - 100));
     first.chain(second).for_each(|dof| table.see(dof));

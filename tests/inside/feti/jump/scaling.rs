@@ -85,7 +85,7 @@ fn redundant_pairs_and_the_general_block_agree() {
 fn blocks_that_are_alike_have_one_scaling() {
     let rows = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [1.0, 0.0, -1.0]];
     let b = Dense::from_fn(3, 3, |i, j| rows[i][j]);
-    let mut known = Known::default();
+    let mut known = ScalingCache::default();
     for (weights, active) in [
         ([1.0, 2.0, 3.0], [true, true, true]),
         ([1.0, 2.0, 3.0], [true, false, true]),
@@ -99,8 +99,8 @@ fn blocks_that_are_alike_have_one_scaling() {
     }
     assert_eq!(known.0.len(), 3);
     // Many that differ do not add up.
-    for k in 0..Known::MOST + 10 {
+    for k in 0..ScalingCache::MOST + 10 {
         known.block(&b, &[1.0, 2.0, 5.0 + k as f64], &[true; 3]);
     }
-    assert!(known.0.len() <= Known::MOST);
+    assert!(known.0.len() <= ScalingCache::MOST);
 }

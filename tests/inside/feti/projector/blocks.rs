@@ -17,7 +17,7 @@ fn starts() -> Vec<usize> {
 
 /// Four rows at the corners of each face between two cubes of a grid: flat without friction, or with a normal that
 /// turns from row to row.
-fn rows(flat: bool) -> Rows {
+fn rows(flat: bool) -> KernelRows {
     let (mut entries, mut row) = (Vec::new(), 0);
     let steps = [1, SIDE, SIDE * SIDE];
     for a in 0..BODIES {
@@ -50,11 +50,11 @@ fn rows(flat: bool) -> Rows {
             }
         }
     }
-    Rows::from_triplets(row as usize, entries)
+    KernelRows::from_triplets(row as usize, entries)
 }
 
 /// Entries and operations of a factor in the order of these blocks.
-fn factor(blocks: &Blocks, at: Option<&[[f64; 3]]>) -> [f64; 2] {
+fn factor(blocks: &ColumnBlocks, at: Option<&[[f64; 3]]>) -> [f64; 2] {
     let mut graph = Csr {
         row_ptr: vec![0],
         ..Csr::default()
@@ -81,7 +81,7 @@ fn flat_faces_couple_half_the_motions_and_make_the_factor_smaller() {
     with_session(|session| {
         let (comm, start) = (session.comm(), starts());
         let g = rows(true);
-        let blocks = Blocks::of_rows(comm, &g, &start);
+        let blocks = ColumnBlocks::of_rows(comm, &g, &start);
         assert_eq!(blocks.n(), 6 * BODIES);
         // A body inside: each translation meets the one of two neighbours and two rotations of all three; each
         // rotation meets a translation and two rotations of four, two of each pair of faces.
@@ -94,7 +94,7 @@ fn flat_faces_couple_half_the_motions_and_make_the_factor_smaller() {
                 assert!(blocks.near[i].binary_search(&(j as u32)).is_ok(), "{i} {j}");
             }
         }
-        let bodies = Blocks::of_bodies(&meeting(comm, &g, &g, &start), &start);
+        let bodies = ColumnBlocks::of_bodies(&meeting(comm, &g, &g, &start), &start);
         let place = |b: usize| [b % SIDE, b / SIDE % SIDE, b / SIDE / SIDE].map(|x| x as f64);
         let at: Vec<[f64; 3]> = (0..BODIES).map(place).collect();
         let [entries, flops] = factor(&blocks, Some(&at));
@@ -114,7 +114,7 @@ fn curved_faces_couple_whole_bodies() {
         let (comm, start) = (session.comm(), starts());
         let g = rows(false);
         let lists = meeting(comm, &g, &g, &start);
-        let blocks = Blocks::of_rows(comm, &g, &start);
+        let blocks = ColumnBlocks::of_rows(comm, &g, &start);
         assert_eq!(blocks.n(), BODIES);
         assert_eq!(blocks.near, lists);
         assert_eq!(blocks.columns(7), 42..48);
@@ -131,9 +131,9 @@ fn parts_of_sets_are_left_out_and_columns_without_rows_are_blocks() {
             let entry = move |&c: &u32| (i, c, 1.0 + f64::from(c));
             set.iter().map(entry)
         });
-        let rows = Rows::from_triplets(sets.len(), entries.collect());
+        let rows = KernelRows::from_triplets(sets.len(), entries.collect());
         assert_eq!(largest_sets(&rows, &start), [&[0, 1, 3][..], &[3, 4]]);
-        let blocks = Blocks::of_rows(session.comm(), &rows, &start);
+        let blocks = ColumnBlocks::of_rows(session.comm(), &rows, &start);
         let columns: Vec<_> = (0..blocks.n() as u32).map(|b| blocks.columns(b)).collect();
         assert_eq!(columns, [0..2, 2..3, 3..4, 4..5, 5..7, 7..9]);
         assert_eq!(blocks.body, [0, 0, 2, 2, 2, 3]);

@@ -1,9 +1,9 @@
 //! Unit tests of `src/feti/projector/hidden.rs`.
 
 use super::*;
+use crate::feti::projector::gram_pattern::{FactorSharing, GramPattern};
 use crate::feti::projector::pattern::meeting;
-use crate::feti::projector::rows::Rows;
-use crate::feti::projector::shape::{Shape, Sharing};
+use crate::feti::projector::rows::KernelRows;
 use crate::testing::with_session;
 
 /// Bodies with two motions each, more than dense algebra is for: a chain, and a last one that meets them all, so that
@@ -20,7 +20,7 @@ fn free(slow: f64, c: u32) -> f64 {
 }
 
 /// Three rows between bodies that meet, which do no work on that motion.
-fn rows(slow: f64) -> Rows {
+fn rows(slow: f64) -> KernelRows {
     let mut entries = Vec::new();
     let mut row = 0;
     for a in 0..BODIES - 1 {
@@ -40,7 +40,7 @@ fn rows(slow: f64) -> Rows {
             }
         }
     }
-    Rows::from_triplets(row as usize, entries)
+    KernelRows::from_triplets(row as usize, entries)
 }
 
 /// A column of the chain is left out in the beginning: the motion is found all the same, and nothing else is.
@@ -52,11 +52,11 @@ fn the_motion_of_a_column_that_is_left_out_is_found() {
         let start: Vec<usize> = (0..=BODIES as usize).map(|b| 2 * b).collect();
         for slow in [1e-1, 1e-2, 1e-3, 1e-4] {
             let g = rows(slow);
-            let shape = Shape::new(
+            let shape = GramPattern::new(
                 comm,
                 &meeting(comm, &g, &g, &start),
                 &start,
-                &Sharing::any(),
+                &FactorSharing::any(),
             );
             let product = shape.product(comm, &g, &g, |_| true);
             let gram = Gram::without(&shape, product, (&[0], &[]));
@@ -86,13 +86,13 @@ fn what_a_row_holds_is_no_motion() {
             entries.extend(g.row(i).map(|(c, v)| (i as u32, c as u32, v)));
         }
         entries.push((n, 0, 1e-3));
-        let g = Rows::from_triplets(g.n() + 1, entries);
+        let g = KernelRows::from_triplets(g.n() + 1, entries);
         let start: Vec<usize> = (0..=BODIES as usize).map(|b| 2 * b).collect();
-        let shape = Shape::new(
+        let shape = GramPattern::new(
             comm,
             &meeting(comm, &g, &g, &start),
             &start,
-            &Sharing::any(),
+            &FactorSharing::any(),
         );
         let gram = Gram::new(&shape, shape.product(comm, &g, &g, |_| true));
         assert!(gram.unheld.is_empty() && gram.weakest().is_none());

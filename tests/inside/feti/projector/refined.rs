@@ -1,17 +1,17 @@
 //! Unit tests of `src/feti/projector/refined.rs`.
 
 use super::*;
+use crate::feti::projector::gram_pattern::FactorSharing;
 use crate::feti::projector::pattern::meeting;
 use crate::feti::projector::products::transposed;
-use crate::feti::projector::rows::Rows;
-use crate::feti::projector::shape::Sharing;
+use crate::feti::projector::rows::KernelRows;
 use crate::testing::with_session;
 
 /// Bodies in a row, with two motions each: more motions than dense algebra is for.
 const BODIES: usize = 100;
 
 /// Rows between neighbours, and rows that hold every tenth body.
-fn rows() -> Rows {
+fn rows() -> KernelRows {
     let held = (0..2 * BODIES as u32).filter(|c| c % 20 < 2);
     let mut entries: Vec<_> = (0..).zip(held).map(|(row, c)| (row, c, 1.0)).collect();
     let mut row = entries.len() as u32;
@@ -23,20 +23,20 @@ fn rows() -> Rows {
             row += 1;
         }
     }
-    Rows::from_triplets(row as usize, entries)
+    KernelRows::from_triplets(row as usize, entries)
 }
 
 /// GᵀDG with weights over four orders, and with every entry above the diagonal wrong by the part `skew`.
-fn with_matrix(skew: f64, test: impl Fn(Result<Refined, Csr>, &Csr) + Send + Sync + 'static) {
+fn with_matrix(skew: f64, test: impl Fn(Result<RefinedFactor, Csr>, &Csr) + Send + Sync + 'static) {
     with_session(move |session| {
         let comm = session.comm();
         let g = rows();
         let start: Vec<usize> = (0..=BODIES).map(|b| 2 * b).collect();
-        let shape = Shape::new(
+        let shape = GramPattern::new(
             comm,
             &meeting(comm, &g, &g, &start),
             &start,
-            &Sharing::any(),
+            &FactorSharing::any(),
         );
         let plain = Gram::new(&shape, shape.product(comm, &g, &g, |_| true));
         assert!(plain.is_sparse() && plain.dropped.is_empty());
@@ -52,16 +52,16 @@ fn with_matrix(skew: f64, test: impl Fn(Result<Refined, Csr>, &Csr) + Send + Syn
             }
         }
         let both = [a.clone(), transposed(&a)];
-        test(Refined::weighted(&shape, both, &plain), &a);
+        test(RefinedFactor::weighted(&shape, both, &plain), &a);
     });
 }
 
 /// max |b − A x| / (max |A| max |x|) for A or its transpose.
-fn residual(a: &Csr, x: &[f64], b: &[f64], side: Side) -> f64 {
+fn residual(a: &Csr, x: &[f64], b: &[f64], side: InverseSide) -> f64 {
     let mut rest = b.to_vec();
     match side {
-        Side::Plain => a.add_mul(-1.0, x, &mut rest),
-        Side::Transposed => a.add_mul_transpose(-1.0, x, &mut rest),
+        InverseSide::Plain => a.add_mul(-1.0, x, &mut rest),
+        InverseSide::Transposed => a.add_mul_transpose(-1.0, x, &mut rest),
     }
     let largest = |v: &[f64]| v.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     largest(&rest) / (largest(&a.val) * largest(x))
@@ -72,7 +72,7 @@ fn solves(skew: f64, steps: std::ops::RangeInclusive<usize>) {
         let weighted = weighted.unwrap_or_else(|_| panic!("the factor is good enough"));
         assert!(steps.contains(&weighted.steps), "{} steps", weighted.steps);
         let b: Vec<f64> = (0..a.n()).map(|i| ((i * 31) % 17) as f64 - 8.0).collect();
-        for side in [Side::Plain, Side::Transposed] {
+        for side in [InverseSide::Plain, InverseSide::Transposed] {
             let mut x = b.clone();
             weighted.solve(&mut x, side);
             let residual = residual(a, &x, &b, side);

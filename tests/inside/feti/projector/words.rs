@@ -2,8 +2,8 @@
 
 use super::*;
 
-fn twist(dim: usize, translation: [f64; 3], rotation: [f64; 3]) -> Twist {
-    Twist {
+fn twist(dim: usize, translation: [f64; 3], rotation: [f64; 3]) -> RigidMotion {
+    RigidMotion {
         body: 0,
         dim,
         centre: [1.0, 2.0, 0.5],
@@ -63,7 +63,7 @@ fn bodies_move_as_one_if_points_do() {
     let a = twist(2, [-2.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     // The same turn about (1, 0), seen from another body.
     let centre = [4.0, 1.0, 0.0];
-    let b = Twist {
+    let b = RigidMotion {
         body: 1,
         centre,
         translation: a.at(centre),
@@ -72,7 +72,7 @@ fn bodies_move_as_one_if_points_do() {
     assert!(as_one(&[a, b]));
     assert!(!as_one(&[
         a,
-        Twist {
+        RigidMotion {
             translation: [0.0; 3],
             ..b
         }

@@ -11,8 +11,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Layout, Terms};
-use crate::assembled::eliminated::Eliminated;
+use super::{LayoutTerms, UnknownLayout};
+use crate::assembled::eliminated::EliminatedUnknowns;
 use base::Result;
 use fetifeti::problem::RowSource;
 use fetifeti::Row;
@@ -26,15 +26,15 @@ const ROW: u64 = 1 << 48;
 const OTHERS: f64 = 1e-3;
 
 /// The place of a row, and its terms in u by place.
-type Placed = (u64, Vec<(u64, f64)>);
+type CombinedRow = (u64, Vec<(u64, f64)>);
 
 /// The rows, and what they do to unknowns.
 #[derive(Debug, Default)]
 pub(super) struct Combined {
     /// For each inequality its place and terms; `None` where it is the difference of two unknowns.
-    rows: Vec<Option<Placed>>,
+    rows: Vec<Option<CombinedRow>>,
     /// The unknown that a row has taken in terms of w, and an offset.
-    of: BTreeMap<u64, Terms>,
+    of: BTreeMap<u64, LayoutTerms>,
     /// Index into `rows` by place.
     at: BTreeMap<u64, usize>,
 }
@@ -47,7 +47,7 @@ impl Combined {
     }
 
     /// An unknown that a row has taken, in terms of w.
-    pub fn get(&self, place: u64) -> Option<&Terms> {
+    pub fn get(&self, place: u64) -> Option<&LayoutTerms> {
         self.of.get(&place)
     }
 
@@ -58,7 +58,7 @@ impl Combined {
     }
 
     /// The places with their terms in u.
-    pub fn rows(&self) -> impl Iterator<Item = &Placed> {
+    pub fn rows(&self) -> impl Iterator<Item = &CombinedRow> {
         self.rows.iter().flatten()
     }
 
@@ -67,7 +67,7 @@ impl Combined {
     }
 }
 
-impl Layout<'_> {
+impl UnknownLayout<'_> {
     /// Whether an inequality is no difference of two unknowns along one direction, nor bounds a single one.
     pub(super) fn is_combined(&self, row: &Row) -> bool {
         match self.ends(row).0.as_slice() {
@@ -139,7 +139,7 @@ impl Layout<'_> {
             _ if wanted.contains(&place) => 1.0,
             _ => OTHERS,
         };
-        let solved = match Eliminated::new(equations, &weight) {
+        let solved = match EliminatedUnknowns::new(equations, &weight) {
             Ok(solved) => solved,
             Err(_) => {
                 self.trouble = Some(self.dependent(inequalities));

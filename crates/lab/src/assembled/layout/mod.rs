@@ -12,12 +12,12 @@
 
 mod combined;
 mod rows;
-mod settle;
+mod to_unknowns;
 
 use std::collections::BTreeMap;
 
-use super::eliminated::Eliminated;
-use super::frame::Frame;
+use super::eliminated::EliminatedUnknowns;
+use super::frame::NodeFrame;
 use super::motions::{Echelon, Functional, Motions};
 use base::linalg::vec3::ball;
 use fetifeti::problem::RowKind;
@@ -26,13 +26,13 @@ use scene::{Numbering, Scene};
 use std::ops::Range;
 
 use combined::Combined;
-use rows::Bounded;
+use rows::BoundedNodes;
 
 /// Σ coefficient · w and an offset.
-pub type Terms = (Vec<(u64, f64)>, f64);
+pub type LayoutTerms = (Vec<(u64, f64)>, f64);
 
 /// The layout of w.
-pub struct Layout<'a> {
+pub struct UnknownLayout<'a> {
     scene: &'a Scene,
     /// The numbering of the free dofs.
     numbering: Numbering,
@@ -44,13 +44,13 @@ pub struct Layout<'a> {
     /// The void places, increasing: those inserted, the dependent ones and the supports.
     void: Vec<u64>,
     /// The unknowns that equations between displacements determine.
-    eliminated: Eliminated,
+    eliminated: EliminatedUnknowns,
     /// Supports with their linear forms in the rigid motions.
     supports: Vec<(u64, Functional)>,
     /// Number of rigid motions that nothing holds and for which there is no support.
     pub unsupported: usize,
     /// The frames of nodes at which w is not u.
-    frames: BTreeMap<u64, Frame>,
+    frames: BTreeMap<u64, NodeFrame>,
     /// The inequalities between more than two unknowns.
     combined: Combined,
     /// The rigid motions of the bodies.
@@ -66,19 +66,19 @@ pub struct Layout<'a> {
     pub trouble: Option<String>,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> UnknownLayout<'a> {
     /// The layout of `scene`.
-    pub fn new(scene: &'a Scene) -> Layout<'a> {
+    pub fn new(scene: &'a Scene) -> UnknownLayout<'a> {
         let motions = Motions::new(scene);
         let held = motions.held(scene);
-        let mut layout = Layout {
+        let mut layout = UnknownLayout {
             scene,
             numbering: Numbering::new(scene),
             components: scene.components(),
             inserted: Vec::new(),
             filled: Vec::new(),
             void: Vec::new(),
-            eliminated: Eliminated::default(),
+            eliminated: EliminatedUnknowns::default(),
             supports: Vec::new(),
             unsupported: 0,
             frames: BTreeMap::new(),
@@ -155,7 +155,7 @@ impl<'a> Layout<'a> {
 
     /// Chooses supports for the rigid motions that nothing holds: beside the nodes in inequalities, or there along
     /// components that no inequality bounds.
-    fn support(&mut self, bounded: &Bounded) {
+    fn support(&mut self, bounded: &BoundedNodes) {
         let loose = self.motions.len() - self.all_held.rank();
         if loose == 0 {
             return;
@@ -220,8 +220,8 @@ impl<'a> Layout<'a> {
         self.scene
     }
 
-    fn frame(&self, block: u64) -> &Frame {
-        self.frames.get(&block).unwrap_or(&Frame::IDENTITY)
+    fn frame(&self, block: u64) -> &NodeFrame {
+        self.frames.get(&block).unwrap_or(&NodeFrame::IDENTITY)
     }
 
     /// Length of w.
@@ -281,7 +281,7 @@ impl<'a> Layout<'a> {
     }
 
     /// u at place `index` as Σ coefficient · w and an offset.
-    pub fn terms(&self, index: u64) -> Terms {
+    pub fn terms(&self, index: u64) -> LayoutTerms {
         let (turned, mut offset) = match self.eliminated.get(index) {
             None => (self.turned(index), 0.0),
             Some((terms, offset)) => {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Layout;
-use crate::assembled::eliminated::{Eliminated, Trouble};
-use crate::assembled::frame::{parallel, Frame};
+use super::UnknownLayout;
+use crate::assembled::eliminated::{EliminatedUnknowns, Trouble};
+use crate::assembled::frame::{parallel, NodeFrame};
 use base::linalg::vec3::{norm, unit};
 use fetifeti::problem::{RowKind, RowSource};
 use fetifeti::Row;
@@ -25,13 +25,13 @@ impl Directions {
 }
 
 /// Nodes whose unknowns inequalities take.
-pub(super) type Bounded = BTreeMap<u64, Directions>;
+pub(super) type BoundedNodes = BTreeMap<u64, Directions>;
 
-impl Layout<'_> {
+impl UnknownLayout<'_> {
     /// The nodes in inequalities with their directions. Where inequalities have more than two unknowns, these are the
     /// nodes that carry multipliers.
-    pub(super) fn bounded(&self, rows: &[&Row]) -> Bounded {
-        let mut directions = Bounded::new();
+    pub(super) fn bounded(&self, rows: &[&Row]) -> BoundedNodes {
+        let mut directions = BoundedNodes::new();
         let mut add = |block: u64, direction: [f64; 3], firm: bool| {
             let of = directions.entry(block).or_default();
             if !of.list.iter().any(|d| parallel(*d, direction)) {
@@ -55,7 +55,7 @@ impl Layout<'_> {
     }
 
     /// Solves the equations beside ties. What inequalities take of a node stays.
-    pub(super) fn eliminate(&mut self, rows: &[Row], bounded: &Bounded) {
+    pub(super) fn eliminate(&mut self, rows: &[Row], bounded: &BoundedNodes) {
         let equations = rows
             .iter()
             .filter(|row| row.kind == RowKind::Equality && self.is_chained(row.label.source));
@@ -69,7 +69,7 @@ impl Layout<'_> {
             let kept = bounded.get(&(place / c));
             f64::from(kept.is_none_or(|of| !of.list.iter().any(taken)))
         };
-        match Eliminated::new(placed, &weight) {
+        match EliminatedUnknowns::new(placed, &weight) {
             Ok(eliminated) => {
                 self.void.extend(eliminated.places());
                 self.void.sort_unstable();
@@ -102,14 +102,17 @@ impl Layout<'_> {
     }
 
     /// Computes the frames of the nodes in inequalities.
-    pub(super) fn turn(&mut self, rows: &[&Row], bounded: &Bounded) {
+    pub(super) fn turn(&mut self, rows: &[&Row], bounded: &BoundedNodes) {
         for (&block, Directions { list, firm }) in bounded {
             let c = self.components as u64;
             let free =
                 [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
             // What need not be an unknown is none where it depends on the others.
             let fits = (*firm..=list.len()).rev();
-            match fits.into_iter().find_map(|n| Frame::new(&list[..n], free)) {
+            match fits
+                .into_iter()
+                .find_map(|n| NodeFrame::new(&list[..n], free))
+            {
                 Some(frame) if frame.is_identity() => {}
                 Some(frame) => {
                     self.frames.insert(block, frame);
@@ -165,7 +168,7 @@ impl Layout<'_> {
         (ends, scale)
     }
 
-    /// As [`Layout::bound`], for inequality number `k` of the scene, which may have more unknowns.
+    /// As [`UnknownLayout::bound`], for inequality number `k` of the scene, which may have more unknowns.
     pub fn bound_of(&self, k: usize, row: &Row) -> Option<([Option<u64>; 2], f64)> {
         match self.combined.place(k) {
             Some(place) => Some(([Some(place), None], 1.0)),

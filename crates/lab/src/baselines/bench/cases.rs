@@ -9,7 +9,7 @@ use report::output;
 
 /// A scene with a name.
 #[derive(Debug)]
-pub struct Named {
+pub struct NamedScene {
     /// Its name.
     pub name: &'static str,
     /// A description in one line.
@@ -20,9 +20,9 @@ pub struct Named {
     mesh: Option<fn(quick: bool) -> MeshFile>,
 }
 
-impl Named {
+impl NamedScene {
     /// The case of this name.
-    pub fn find(name: &str) -> Option<&'static Named> {
+    pub fn find(name: &str) -> Option<&'static NamedScene> {
         CASES.iter().find(|c| c.name == name)
     }
 
@@ -49,102 +49,102 @@ impl Named {
 }
 
 /// All cases, in the order in which they are run.
-pub const CASES: [Named; 16] = [
-    Named {
+pub const CASES: [NamedScene; 16] = [
+    NamedScene {
         name: "poisson-1024",
         description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
         scene: |quick| poisson(quick, false),
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "poisson-1024-random",
         description: "the same with every node moved and rho random by element: \
                       no two subdomains are equal (quick: 128 x 128)",
         scene: |quick| poisson(quick, true),
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "contact-512",
         description: "model contact problem, 2 bodies of 512 x 512 elements, one of them floating (quick: 64 x 64)",
         scene: contact,
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "cube-24",
         description: "tied elastic cube, 24 x 24 x 24 elements (quick: 12 x 12 x 12)",
         scene: |quick| cube(if quick { 12 } else { 24 }),
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "cube-40",
         description: "tied elastic cube, 40 x 40 x 40 elements (quick: 20 x 20 x 20)",
         scene: |quick| cube(if quick { 20 } else { 40 }),
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "cube-contact-24",
         description: "two elastic blocks in contact, 24 x 24 x 24 elements together (quick: 12 x 12 x 12)",
         scene: cube_contact,
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "holes",
         description: "Poisson problem on a plate with 25 holes, a million triangles' corners (quick: 20,000)",
         scene: |quick| unstructured::plate(quick, false),
         mesh: Some(|quick| unstructured::plate_mesh(quick, false)),
     },
-    Named {
+    NamedScene {
         name: "plate",
         description: "elastic plate with 25 holes, triangles, a million unknowns (quick: 20,000)",
         scene: |quick| unstructured::plate(quick, true),
         mesh: Some(|quick| unstructured::plate_mesh(quick, true)),
     },
-    Named {
+    NamedScene {
         name: "rod-4",
         description: "connecting rod, tied to cap, journal and pin, tetrahedra of 4 nodes, 300,000 unknowns \
                       (quick: 20,000)",
         scene: |_| unstructured::rod(false, false),
         mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
     },
-    Named {
+    NamedScene {
         name: "rod-10",
         description: "the same of tetrahedra of 10 nodes",
         scene: |_| unstructured::rod(false, true),
         mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
     },
-    Named {
+    NamedScene {
         name: "rod-contact-4",
         description: "connecting rod, tied to its cap, in contact with journal and pin, tetrahedra of 4 nodes",
         scene: |_| unstructured::rod(true, false),
         mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
     },
-    Named {
+    NamedScene {
         name: "rod-contact-10",
         description: "the same of tetrahedra of 10 nodes",
         scene: |_| unstructured::rod(true, true),
         mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
     },
-    Named {
+    NamedScene {
         name: "blocks-contact-4",
         description: "two blocks in contact, meshes that match, tetrahedra of 4 nodes, 300,000 unknowns \
                       (quick: 20,000)",
         scene: |_| unstructured::blocks(false),
         mesh: Some(|quick| unstructured::blocks_mesh(quick, false)),
     },
-    Named {
+    NamedScene {
         name: "blocks-contact-4-mortar",
         description: "the same with edges in the ratio 2:3 across the contact: mortar rows",
         scene: |_| unstructured::blocks(true),
         mesh: Some(|quick| unstructured::blocks_mesh(quick, true)),
     },
-    Named {
+    NamedScene {
         name: "bodies-contact-512",
         description: "8 x 8 x 8 elastic blocks, all faces in contact, 33,000 candidates, 192,000 unknowns \
                       (quick: 3 x 3 x 3)",
         scene: |quick| bodies(if quick { 3 } else { 8 }),
         mesh: None,
     },
-    Named {
+    NamedScene {
         name: "bodies-contact-4096",
         description: "16 x 16 x 16 of them, 287,000 candidates, 1.5 million unknowns (quick: 4 x 4 x 4)",
         scene: |quick| bodies(if quick { 4 } else { 16 }),

@@ -16,12 +16,12 @@ use std::path::PathBuf;
 use super::compare::on_first_rank;
 use super::launch::{interrupted, Launcher, Workspace};
 use super::methods::{facts, forwarded, judged, row, sentence, stopped, Left, Methods, Ran};
-use super::plan::{Layouts, Plan};
+use super::plan::{BaselinePlan, Layouts};
 use super::table::Baseline;
 use crate::baselines::methods;
 use crate::baselines::table;
 use base::{Error, Result};
-use cases::{Named, CASES};
+use cases::{NamedScene, CASES};
 use petsc::signals::Signals;
 use petsc::Session;
 use report::destination::Destination;
@@ -50,17 +50,17 @@ pub struct Benchmark {
 }
 
 /// The directory of a named case and its files.
-type Home = (Workspace, Vec<String>);
+type CaseFiles = (Workspace, Vec<String>);
 
 /// A case of this benchmark.
-struct Case {
+struct BenchInput {
     name: String,
     /// The scene file.
     file: PathBuf,
     /// It lives as long as the case; `None` for a file of the user.
-    home: Option<Home>,
+    home: Option<CaseFiles>,
     scene: Scene,
-    plan: Plan,
+    plan: BaselinePlan,
 }
 
 /// Runs the benchmark. Under mpirun only rank 0 starts jobs, the others wait. Collective.
@@ -78,11 +78,11 @@ pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     }
     // Files of cases go when a signal ends this.
     let _signals = Signals::watch();
-    let cases: Result<Vec<Case>> = names
+    let cases: Result<Vec<BenchInput>> = names
         .iter()
         .map(|name| {
             session.agree(interrupted())?;
-            Case::new(session, name, wanted.quick, &baselines)
+            BenchInput::new(session, name, wanted.quick, &baselines)
         })
         .collect();
     let cases = cases?;
@@ -92,21 +92,21 @@ pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
 /// The cases, one line each.
 pub fn cases() -> String {
     let width = CASES.iter().map(|c| c.name.len()).max().unwrap_or(0);
-    let line = |c: &Named| format!("{:width$}  {}\n", c.name, c.description);
+    let line = |c: &NamedScene| format!("{:width$}  {}\n", c.name, c.description);
     CASES.iter().map(line).collect()
 }
 
-impl Case {
+impl BenchInput {
     /// A case by its name, or a scene file of the user. Collective.
     fn new(
         session: &Session,
         name: &str,
         quick: bool,
         baselines: &[&'static Baseline],
-    ) -> Result<Case> {
+    ) -> Result<BenchInput> {
         // Every process writes files of its own.
-        let read = || -> Result<(String, PathBuf, Option<Home>, Scene)> {
-            if let Some(named) = Named::find(name) {
+        let read = || -> Result<(String, PathBuf, Option<CaseFiles>, Scene)> {
+            if let Some(named) = NamedScene::find(name) {
                 let home = Workspace::new()?;
                 let (file, names) = named.write(home.dir(), quick)?;
                 let scene = fits::load(session, &file)?;
@@ -128,9 +128,9 @@ impl Case {
         };
         let (name, file, home, scene) = session.agree(read())?;
         let plan = distribution::with_options(session, &scene, || {
-            Plan::new(session, &scene, baselines, Layouts::Three)
+            BaselinePlan::new(session, &scene, baselines, Layouts::Three)
         })?;
-        Ok(Case {
+        Ok(BenchInput {
             name,
             file,
             home,
@@ -141,7 +141,7 @@ impl Case {
 }
 
 /// On rank 0: case by case, round by round.
-fn run(session: &Session, wanted: &Benchmark, cases: &[Case]) -> Result<()> {
+fn run(session: &Session, wanted: &Benchmark, cases: &[BenchInput]) -> Result<()> {
     let Benchmark { destination, .. } = wanted;
     destination.prepare()?;
     let mut report = BenchReport {
@@ -169,7 +169,7 @@ fn run(session: &Session, wanted: &Benchmark, cases: &[Case]) -> Result<()> {
 fn rounds(
     session: &Session,
     wanted: &Benchmark,
-    cases: &[Case],
+    cases: &[BenchInput],
     report: &mut BenchReport,
 ) -> Result<()> {
     let Benchmark { destination, .. } = wanted;
@@ -223,7 +223,7 @@ fn rounds(
 /// solutions and their active sets.
 fn one_round(
     wanted: &Benchmark,
-    case: &Case,
+    case: &BenchInput,
     methods: &mut Methods,
     now: &mut BenchCase,
     (round, sequence): (usize, &mut usize),
@@ -272,7 +272,7 @@ fn one_round(
 }
 
 /// The record of a case before its first round.
-fn blank(case: &Case) -> BenchCase {
+fn blank(case: &BenchInput) -> BenchCase {
     let rows = case.plan.runs.iter().map(|run| BenchRow {
         run: methods::blank(run),
         layout: run.layout.into(),
@@ -344,7 +344,7 @@ fn progress(wanted: &Benchmark, what: &str) {
     }
 }
 
-fn write(destination: &Destination, cases: &[Case], report: &BenchReport) -> Result<()> {
+fn write(destination: &Destination, cases: &[BenchInput], report: &BenchReport) -> Result<()> {
     destination.finish("bench", &tables::text(report), report, |dir| {
         tables::csv(report).write_csv(&dir.join("bench.csv"))?;
         tables::figure(report).save(&dir.join("bench"))?;

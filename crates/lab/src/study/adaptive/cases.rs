@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::fields::Field;
+use super::fields::CoefficientField;
 use base::Result;
 use report::output;
 
 /// The equations and the dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Problem {
+pub enum CaseEquations {
     /// −∇·(ρ∇u) = f in the plane.
     Scalar2d,
     /// Plane strain.
@@ -19,24 +19,24 @@ pub enum Problem {
     Elastic3d,
 }
 
-impl Problem {
+impl CaseEquations {
     /// All of them.
-    pub const ALL: [Problem; 4] = [
-        Problem::Scalar2d,
-        Problem::Elastic2d,
-        Problem::Scalar3d,
-        Problem::Elastic3d,
+    pub const ALL: [CaseEquations; 4] = [
+        CaseEquations::Scalar2d,
+        CaseEquations::Elastic2d,
+        CaseEquations::Scalar3d,
+        CaseEquations::Elastic3d,
     ];
 
     fn dim(self) -> usize {
         match self {
-            Problem::Scalar2d | Problem::Elastic2d => 2,
-            Problem::Scalar3d | Problem::Elastic3d => 3,
+            CaseEquations::Scalar2d | CaseEquations::Elastic2d => 2,
+            CaseEquations::Scalar3d | CaseEquations::Elastic3d => 3,
         }
     }
 
     fn elastic(self) -> bool {
-        matches!(self, Problem::Elastic2d | Problem::Elastic3d)
+        matches!(self, CaseEquations::Elastic2d | CaseEquations::Elastic3d)
     }
 }
 
@@ -70,7 +70,7 @@ impl AdaptiveCase {
 
 /// Bodies, subdomains of a body and elements of a subdomain in one direction; bodies in contact have two rows.
 #[derive(Debug, Clone, Copy)]
-struct Size {
+struct ProblemSize {
     bodies: usize,
     subdomains: usize,
     elements: usize,
@@ -87,18 +87,18 @@ pub enum Meshes {
     Fine,
 }
 
-fn size(problem: Problem, meshes: Meshes) -> Size {
+fn size(problem: CaseEquations, meshes: Meshes) -> ProblemSize {
     let [bodies, subdomains, elements] = match (problem, meshes) {
-        (Problem::Scalar2d | Problem::Elastic2d, Meshes::Quick) => [2, 3, 3],
-        (Problem::Scalar2d | Problem::Elastic2d, Meshes::Small) => [3, 4, 4],
-        (Problem::Scalar2d, Meshes::Fine) => [3, 4, 16],
-        (Problem::Elastic2d, Meshes::Fine) => [3, 4, 12],
-        (_, Meshes::Quick) | (Problem::Elastic3d, Meshes::Small) => [2, 2, 2],
-        (Problem::Scalar3d, Meshes::Small) => [2, 2, 3],
-        (Problem::Scalar3d, Meshes::Fine) => [2, 2, 8],
-        (Problem::Elastic3d, Meshes::Fine) => [2, 2, 4],
+        (CaseEquations::Scalar2d | CaseEquations::Elastic2d, Meshes::Quick) => [2, 3, 3],
+        (CaseEquations::Scalar2d | CaseEquations::Elastic2d, Meshes::Small) => [3, 4, 4],
+        (CaseEquations::Scalar2d, Meshes::Fine) => [3, 4, 16],
+        (CaseEquations::Elastic2d, Meshes::Fine) => [3, 4, 12],
+        (_, Meshes::Quick) | (CaseEquations::Elastic3d, Meshes::Small) => [2, 2, 2],
+        (CaseEquations::Scalar3d, Meshes::Small) => [2, 2, 3],
+        (CaseEquations::Scalar3d, Meshes::Fine) => [2, 2, 8],
+        (CaseEquations::Elastic3d, Meshes::Fine) => [2, 2, 4],
     };
-    Size {
+    ProblemSize {
         bodies,
         subdomains,
         elements,
@@ -106,30 +106,30 @@ fn size(problem: Problem, meshes: Meshes) -> Size {
 }
 
 /// The coefficient fields of tied bodies; the constant one is the control.
-const TIED: [Field; 7] = [
-    Field::Constant,
-    Field::Subdomains(3.0),
-    Field::Subdomains(6.0),
-    Field::Elements(3.0),
-    Field::Elements(6.0),
-    Field::Channels,
-    Field::Inclusions,
+const TIED: [CoefficientField; 7] = [
+    CoefficientField::Constant,
+    CoefficientField::Subdomains(3.0),
+    CoefficientField::Subdomains(6.0),
+    CoefficientField::Elements(3.0),
+    CoefficientField::Elements(6.0),
+    CoefficientField::Channels,
+    CoefficientField::Inclusions,
 ];
 
 /// The coefficient fields of bodies in contact, in the plane.
-const CONTACT: [Field; 6] = [
-    Field::Constant,
-    Field::Subdomains(3.0),
-    Field::Subdomains(6.0),
-    Field::Elements(3.0),
-    Field::Channels,
-    Field::Inclusions,
+const CONTACT: [CoefficientField; 6] = [
+    CoefficientField::Constant,
+    CoefficientField::Subdomains(3.0),
+    CoefficientField::Subdomains(6.0),
+    CoefficientField::Elements(3.0),
+    CoefficientField::Channels,
+    CoefficientField::Inclusions,
 ];
 
 /// All cases; of the quick meshes a selection.
 pub fn cases(meshes: Meshes) -> Vec<AdaptiveCase> {
     let mut out = Vec::new();
-    for problem in Problem::ALL {
+    for problem in CaseEquations::ALL {
         let tied = TIED.map(|field| (field, false));
         let contact = CONTACT.map(|field| (field, true));
         let fields = tied.into_iter().chain(contact);
@@ -155,18 +155,24 @@ const QUICK: [&str; 8] = [
     "elastic-3d-subdomain-6",
 ];
 
-fn name(problem: Problem, field: Field, contact: bool) -> String {
+fn name(problem: CaseEquations, field: CoefficientField, contact: bool) -> String {
     let problem = match problem {
-        Problem::Scalar2d => "scalar-2d",
-        Problem::Elastic2d => "elastic-2d",
-        Problem::Scalar3d => "scalar-3d",
-        Problem::Elastic3d => "elastic-3d",
+        CaseEquations::Scalar2d => "scalar-2d",
+        CaseEquations::Elastic2d => "elastic-2d",
+        CaseEquations::Scalar3d => "scalar-3d",
+        CaseEquations::Elastic3d => "elastic-3d",
     };
     let contact = if contact { "contact-" } else { "" };
     format!("{problem}-{contact}{}", field.name())
 }
 
-fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size) -> AdaptiveCase {
+fn case(
+    name: String,
+    problem: CaseEquations,
+    field: CoefficientField,
+    contact: bool,
+    size: ProblemSize,
+) -> AdaptiveCase {
     let dim = problem.dim();
     let mut bodies = [size.bodies, size.bodies, 1];
     if dim == 3 {
@@ -231,12 +237,16 @@ fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size)
 }
 
 /// Tied bodies: held on one side, under a load without symmetry.
-fn pulled(problem: Problem) -> &'static str {
+fn pulled(problem: CaseEquations) -> &'static str {
     match problem {
-        Problem::Scalar2d => "dirichlet = [\"left\"]\nload = \"1 + x*y + sin(7*x + 5*y)\"\n",
-        Problem::Elastic2d => "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n",
-        Problem::Scalar3d => "dirichlet = [\"left\"]\nload = \"1 + x*y + sin(7*x + 5*y - 3*z)\"\n",
-        Problem::Elastic3d => {
+        CaseEquations::Scalar2d => "dirichlet = [\"left\"]\nload = \"1 + x*y + sin(7*x + 5*y)\"\n",
+        CaseEquations::Elastic2d => {
+            "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n"
+        }
+        CaseEquations::Scalar3d => {
+            "dirichlet = [\"left\"]\nload = \"1 + x*y + sin(7*x + 5*y - 3*z)\"\n"
+        }
+        CaseEquations::Elastic3d => {
             "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\", \"z - 0.3*x\"]\n"
         }
     }
@@ -244,7 +254,7 @@ fn pulled(problem: Problem) -> &'static str {
 
 /// Two rows of bodies in contact: the upper row is pressed onto the lower one on the left, where its load is heavier,
 /// and lifted on the right.
-fn pressed(problem: Problem) -> &'static str {
+fn pressed(problem: CaseEquations) -> &'static str {
     if problem.elastic() {
         "dirichlet = { bottom = 0, left = { x = 0 }, right = { x = 0 } }\n\
          load = [\"0.2*y\", \"if(x < 0.7, -2, 0.5)\"]\n"

@@ -25,7 +25,7 @@ impl Random {
 
 /// A kind of field.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Field {
+pub enum CoefficientField {
     /// One everywhere.
     Constant,
     /// 10^x with x uniform in [−p, p], one number for every subdomain.
@@ -48,36 +48,36 @@ const SPACING: usize = 5;
 /// Inclusions take at least this part of the volume.
 const FILLED: f64 = 0.2;
 
-impl Field {
+impl CoefficientField {
     /// Its name, a word.
     pub fn name(self) -> &'static str {
         match self {
-            Field::Constant => "constant",
-            Field::Subdomains(p) if p < 4.0 => "subdomain-3",
-            Field::Subdomains(_) => "subdomain-6",
-            Field::Elements(p) if p < 4.0 => "element-3",
-            Field::Elements(_) => "element-6",
-            Field::Channels => "channels",
-            Field::Inclusions => "inclusions",
+            CoefficientField::Constant => "constant",
+            CoefficientField::Subdomains(p) if p < 4.0 => "subdomain-3",
+            CoefficientField::Subdomains(_) => "subdomain-6",
+            CoefficientField::Elements(p) if p < 4.0 => "element-3",
+            CoefficientField::Elements(_) => "element-6",
+            CoefficientField::Channels => "channels",
+            CoefficientField::Inclusions => "inclusions",
         }
     }
 
     /// A description.
     pub fn title(self) -> String {
         match self {
-            Field::Constant => "constant coefficient".into(),
-            Field::Subdomains(p) => format!("10^[-{p}, {p}] by subdomain"),
-            Field::Elements(p) => format!("10^[-{p}, {p}] by element"),
-            Field::Channels => "channels of 1e6, one element thick".into(),
-            Field::Inclusions => "random inclusions of 1e6".into(),
+            CoefficientField::Constant => "constant coefficient".into(),
+            CoefficientField::Subdomains(p) => format!("10^[-{p}, {p}] by subdomain"),
+            CoefficientField::Elements(p) => format!("10^[-{p}, {p}] by element"),
+            CoefficientField::Channels => "channels of 1e6, one element thick".into(),
+            CoefficientField::Inclusions => "random inclusions of 1e6".into(),
         }
     }
 
     /// The cells of the grid, for these numbers of subdomains and elements of the whole domain in each direction.
     pub fn cells(self, subdomains: [usize; 3], elements: [usize; 3]) -> [usize; 3] {
         match self {
-            Field::Constant => [1; 3],
-            Field::Subdomains(_) => subdomains,
+            CoefficientField::Constant => [1; 3],
+            CoefficientField::Subdomains(_) => subdomains,
             _ => elements,
         }
     }
@@ -87,11 +87,11 @@ impl Field {
         let n: usize = cells.iter().product();
         let mut random = Random(seed);
         match self {
-            Field::Constant => vec![1.0; n],
-            Field::Subdomains(p) | Field::Elements(p) => (0..n)
+            CoefficientField::Constant => vec![1.0; n],
+            CoefficientField::Subdomains(p) | CoefficientField::Elements(p) => (0..n)
                 .map(|_| 10f64.powf(p * (2.0 * random.unit() - 1.0)))
                 .collect(),
-            Field::Channels => {
+            CoefficientField::Channels => {
                 let stiff = |i: usize| {
                     let (y, z) = (i / cells[0] % cells[1], i / cells[0] / cells[1]);
                     // In space channels are bars; plates would cut the domain.
@@ -99,7 +99,7 @@ impl Field {
                 };
                 (0..n).map(|i| if stiff(i) { STIFF } else { 1.0 }).collect()
             }
-            Field::Inclusions => inclusions(cells, n, &mut random),
+            CoefficientField::Inclusions => inclusions(cells, n, &mut random),
         }
     }
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::{AdaptiveCase, AdaptiveRun, Bddc, Effort, Fine, Plain, Record, RTOL, USUAL};
-use crate::assembled::layout::Layout;
-use crate::assembled::reference::{Precision, Reference};
+use crate::assembled::layout::UnknownLayout;
+use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::system::Copies;
 use crate::baselines::single;
 use base::{ErrorKind, Result};
@@ -31,7 +31,7 @@ const ADAPTIVE: [&str; 4] = [
 ];
 
 /// A solve and its cost.
-struct Solved {
+struct MeasuredSolve {
     solver: FetiFeti,
     solution: Solution,
     seconds: f64,
@@ -53,13 +53,13 @@ pub fn one(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) -
         subdomains: scene.n_subdomains(),
         ..Record::default()
     };
-    let layout = Layout::new(&scene);
+    let layout = UnknownLayout::new(&scene);
     let direct = Reference::certified(session, &scene, &layout);
     if let Err(e) = &direct {
         eprintln!("{}: {e}", case.name);
     }
     let direct = direct.ok();
-    let court = Court {
+    let court = DirectComparison {
         direct: direct.as_ref(),
         parts: &problem.local,
     };
@@ -98,10 +98,10 @@ pub fn one(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) -
 fn mumps<'a>(
     session: &Session,
     scene: &Scene,
-    layout: &'a Layout<'a>,
+    layout: &'a UnknownLayout<'a>,
     known: Option<&[bool]>,
 ) -> Result<Reference<'a>> {
-    let solve = |set| Reference::new(session, scene, layout, Precision::Working, set);
+    let solve = |set| Reference::new(session, scene, layout, ResidualPrecision::Working, set);
     let found = solve(None)?;
     match known {
         Some(known) if !found.found.converged => solve(Some(known)),
@@ -113,7 +113,7 @@ fn mumps<'a>(
 fn ours(
     session: &Session,
     problem: &Problem,
-    court: &Court,
+    court: &DirectComparison,
     effort: Effort,
     record: &mut Record,
 ) -> Result<()> {
@@ -155,14 +155,14 @@ fn ours(
     Ok(())
 }
 
-fn solve(session: &Session, problem: &Problem, adaptive: Adaptive) -> Result<Solved> {
+fn solve(session: &Session, problem: &Problem, adaptive: Adaptive) -> Result<MeasuredSolve> {
     let settings = MethodSettings::default().rtol(RTOL).adaptive(adaptive);
     let problem = problem.clone();
     let clock = Instant::now();
     let mut solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
     let seconds = clock.elapsed().as_secs_f64();
-    Ok(Solved {
+    Ok(MeasuredSolve {
         solver,
         solution,
         seconds,
@@ -180,7 +180,12 @@ fn refused(way: Adaptive, said: String, record: &mut Record) {
     }
 }
 
-fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) -> Result<()> {
+fn plain(
+    solved: &MeasuredSolve,
+    court: &DirectComparison,
+    effort: Effort,
+    record: &mut Record,
+) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
@@ -202,7 +207,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     Ok(())
 }
 
-fn deflated(tau: f64, solved: &mut Solved, court: &Court) -> Result<AdaptiveRun> {
+fn deflated(tau: f64, solved: &mut MeasuredSolve, court: &DirectComparison) -> Result<AdaptiveRun> {
     let (solver, solution) = (&mut solved.solver, &solved.solution);
     let searched = solver.deflated().is_some();
     // As with -fetifeti_spectrum: vectors that the iterations have not called for are searched for as well.
@@ -228,7 +233,11 @@ fn deflated(tau: f64, solved: &mut Solved, court: &Court) -> Result<AdaptiveRun>
 
 /// The smallest error over ever smaller residuals, up to and including the first residual that is not reached: as for
 /// MUMPS, only the solution counts.
-fn attainable(solver: &mut FetiFeti, court: &Court, first: Option<f64>) -> Result<Option<f64>> {
+fn attainable(
+    solver: &mut FetiFeti,
+    court: &DirectComparison,
+    first: Option<f64>,
+) -> Result<Option<f64>> {
     let mut least = first;
     for rtol in TIGHTER {
         solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
@@ -260,7 +269,7 @@ pub fn fine(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) 
     let (mut off, mut on, mut search) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..effort.repeats {
         for way in [Adaptive::Off, Adaptive::Below(USUAL)] {
-            let Solved {
+            let MeasuredSolve {
                 solver,
                 solution,
                 seconds,
@@ -325,12 +334,12 @@ fn bddc(
 }
 
 /// Measures the distance of solutions from the direct one.
-struct Court<'a> {
+struct DirectComparison<'a> {
     direct: Option<&'a Reference<'a>>,
     parts: &'a [Subdomain],
 }
 
-impl Court<'_> {
+impl DirectComparison<'_> {
     /// The relative distance in the energy norm. Copies that differ are averaged with the weight of their coefficients,
     /// as in `compare`.
     fn error(&self, u: &[Vec<f64>]) -> Result<Option<f64>> {

@@ -12,8 +12,8 @@ mod fields;
 mod measure;
 mod table;
 
-pub use cases::{cases, AdaptiveCase, Meshes, Problem};
-pub use fields::Field;
+pub use cases::{cases, AdaptiveCase, CaseEquations, Meshes};
+pub use fields::CoefficientField;
 pub use table::{fine, table, text};
 
 use std::path::Path;

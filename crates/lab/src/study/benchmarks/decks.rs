@@ -8,11 +8,11 @@ use std::time::Instant;
 use flate2::read::GzDecoder;
 use std::io::Read;
 
-use super::report::{Mesh, Series, Value};
+use super::report::{MeasuredValue, MeshResult, MeshSeries};
 use super::runner::Runner;
 use crate::baselines::launch;
 use base::{Error, Result};
-use deck::{read_dat, Table};
+use deck::{read_dat, DatTable};
 use report::json::SolveReport;
 
 /// Where the package puts its decks.
@@ -25,7 +25,7 @@ const LIMITS: [(usize, Option<f64>); 4] = [(1, Some(1e-3)), (2, Some(5e-3)), (3,
 const STIFF: f64 = 5e-3;
 
 /// The decks, and why some of them or CalculiX did not run. On one rank only: the program starts others.
-pub fn run(runner: &mut Runner) -> Result<(Vec<Series>, Vec<String>)> {
+pub fn run(runner: &mut Runner) -> Result<(Vec<MeshSeries>, Vec<String>)> {
     let mut skipped = Vec::new();
     if runner.session.size() > 1 {
         skipped.push("it starts programs, which it does on one rank only".to_string());
@@ -52,7 +52,7 @@ pub fn run(runner: &mut Runner) -> Result<(Vec<Series>, Vec<String>)> {
         let (deck, printed) = (deck?, printed?);
         report::output::write_text(&runner.dir.join(format!("{name}.inp")), &deck)?;
         let found = solve(runner, &name)?;
-        let mut values = vec![Value::error(
+        let mut values = vec![MeasuredValue::error(
             "from the printed u",
             distance(&found.tables, &read_dat(&printed)),
         )
@@ -61,7 +61,7 @@ pub fn run(runner: &mut Runner) -> Result<(Vec<Series>, Vec<String>)> {
             values.extend(beside_ccx(runner, &name, &deck, &found)?);
         }
         let report = &found.report;
-        list.push(Mesh {
+        list.push(MeshResult {
             mesh: name.clone(),
             size: 1.0,
             scene: format!("{name}.inp"),
@@ -76,19 +76,19 @@ pub fn run(runner: &mut Runner) -> Result<(Vec<Series>, Vec<String>)> {
             seconds: found.seconds,
         });
     }
-    Ok((vec![Series::new("CalculiX's decks", list)], skipped))
+    Ok((vec![MeshSeries::new("CalculiX's decks", list)], skipped))
 }
 
 /// A deck, as the program solved it.
-struct Found {
-    tables: Vec<Table>,
+struct SolvedDeck {
+    tables: Vec<DatTable>,
     report: SolveReport,
     /// Of the whole process.
     seconds: f64,
 }
 
 /// `fetifeti solve` in a process of its own.
-fn solve(runner: &Runner, name: &str) -> Result<Found> {
+fn solve(runner: &Runner, name: &str) -> Result<SolvedDeck> {
     let out = runner.dir.join(name);
     let json = out.join("report.json");
     let mut command = Command::new(launch::own()?);
@@ -109,7 +109,7 @@ fn solve(runner: &Runner, name: &str) -> Result<Found> {
         let said = String::from_utf8_lossy(&done.stderr);
         return Err(Error::not_converged(format!("{name}: {}", said.trim())));
     }
-    Ok(Found {
+    Ok(SolvedDeck {
         tables: read_dat(&text(&out.join(format!("{name}.dat")))?),
         report: launch::read(&text(&json)?)?,
         seconds,
@@ -117,7 +117,12 @@ fn solve(runner: &Runner, name: &str) -> Result<Found> {
 }
 
 /// CalculiX on the same deck, and with stiffer contact where the deck's is soft: seconds and distances.
-fn beside_ccx(runner: &Runner, name: &str, deck: &str, found: &Found) -> Result<Vec<Value>> {
+fn beside_ccx(
+    runner: &Runner,
+    name: &str,
+    deck: &str,
+    found: &SolvedDeck,
+) -> Result<Vec<MeasuredValue>> {
     let mut values = Vec::new();
     let times = if runner.quick { 1 } else { 3 };
     let mut theirs = Vec::new();
@@ -135,7 +140,7 @@ fn beside_ccx(runner: &Runner, name: &str, deck: &str, found: &Found) -> Result<
     }
     if theirs.len() == times {
         let seconds = median(theirs);
-        values.push(Value {
+        values.push(MeasuredValue {
             quantity: "seconds, ours and ccx".into(),
             ours: Some(median(ours)),
             reference: Some(seconds),
@@ -149,7 +154,7 @@ fn beside_ccx(runner: &Runner, name: &str, deck: &str, found: &Found) -> Result<
         if launch_ccx(runner.dir, &["-i", &job]).is_some() {
             let tables = read_dat(&text(&runner.dir.join(format!("{job}.dat")))?);
             let away = distance(&found.tables, &tables);
-            values.push(Value::error("from ccx with 10^15", away).within(Some(STIFF)));
+            values.push(MeasuredValue::error("from ccx with 10^15", away).within(Some(STIFF)));
         }
     }
     Ok(values)
@@ -194,7 +199,7 @@ fn launch_ccx(dir: &Path, args: &[&str]) -> Option<f64> {
 }
 
 /// The largest difference of a displacement, relative to the largest displacement of its table.
-fn distance(ours: &[Table], theirs: &[Table]) -> f64 {
+fn distance(ours: &[DatTable], theirs: &[DatTable]) -> f64 {
     let mut worst = 0.0_f64;
     for (a, b) in ours.iter().zip(theirs) {
         let size = b

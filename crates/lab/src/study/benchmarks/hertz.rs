@@ -2,9 +2,9 @@
 //! first of NAFEMS' contact benchmarks.
 
 use super::meshes::{Ball, Roller};
-use super::report::{Mesh, Node, Series, Value};
-use super::runner::{Run, Runner};
-use crate::study::hertz::{measure, Contact, Elastic, Pair, Pressure};
+use super::report::{MeasuredValue, MeshResult, MeshSeries, ReferencePressure};
+use super::runner::{Runner, SolvedScene};
+use crate::study::hertz::{measure, Elastic, HertzContact, HertzPair, NodalPressure};
 use base::{Error, Result};
 
 /// Young's modulus of steel and aluminium in N/mm², and Poisson's ratio of both.
@@ -12,14 +12,14 @@ const YOUNG: [f64; 2] = [210e3, 70e3];
 const POISSON: f64 = 0.3;
 
 /// The largest permitted errors of force, half-width and peak on the finest mesh.
-struct Limits {
+struct HertzLimits {
     force: f64,
     curve: f64,
     fit: f64,
 }
 
 /// A cylinder of radius 10 mm on a block of 40 × 20 mm, a/R = 0.05.
-pub fn cylinder(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn cylinder(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let roller = Roller {
         radius: 10.0,
         block: [20.0, 20.0],
@@ -29,7 +29,7 @@ pub fn cylinder(runner: &mut Runner) -> Result<Vec<Series>> {
     };
     let pair = pair(10.0, false);
     let force = std::f64::consts::PI * pair.modulus * 0.25 / (4.0 * 10.0);
-    let limits = Limits {
+    let limits = HertzLimits {
         force: 1e-6,
         curve: 0.03,
         fit: 0.01,
@@ -38,7 +38,7 @@ pub fn cylinder(runner: &mut Runner) -> Result<Vec<Series>> {
 }
 
 /// The roller of radius 50 mm under 35 kN per mm of thickness, on a block of 200 × 200 mm.
-pub fn roller(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn roller(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let pair = pair(50.0, false);
     let roller = Roller {
         radius: 50.0,
@@ -47,7 +47,7 @@ pub fn roller(runner: &mut Runner) -> Result<Vec<Series>> {
         load: 8.0,
         a: pair.under(35e3).a,
     };
-    let limits = Limits {
+    let limits = HertzLimits {
         force: 1e-6,
         curve: 0.05,
         fit: 0.02,
@@ -55,13 +55,13 @@ pub fn roller(runner: &mut Runner) -> Result<Vec<Series>> {
     plane(runner, "roller", &roller, &pair, 35e3, &limits)
 }
 
-fn pair(radius: f64, spheres: bool) -> Pair {
+fn pair(radius: f64, spheres: bool) -> HertzPair {
     let body = |young, radius| Elastic {
         young,
         poisson: POISSON,
         radius,
     };
-    Pair::new(
+    HertzPair::new(
         [body(YOUNG[0], radius), body(YOUNG[1], f64::INFINITY)],
         spheres,
     )
@@ -80,10 +80,10 @@ fn plane(
     runner: &mut Runner,
     name: &str,
     roller: &Roller,
-    pair: &Pair,
+    pair: &HertzPair,
     force: f64,
-    limits: &Limits,
-) -> Result<Vec<Series>> {
+    limits: &HertzLimits,
+) -> Result<Vec<MeshSeries>> {
     let mut out = Vec::new();
     let [first, second] = edges(runner.quick);
     let mut kinds = vec![(1, first, "lower"), (2, second, "lower")];
@@ -120,7 +120,7 @@ fn plane(
             "upper" => ", multipliers on the finer side",
             _ => "",
         };
-        out.push(Series::new(
+        out.push(MeshSeries::new(
             format!("triangles of order {order}{carried}"),
             list,
         ));
@@ -129,7 +129,7 @@ fn plane(
 }
 
 /// A ball of radius 10 mm on a block, a/R = 0.06.
-pub fn sphere(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn sphere(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let ball = Ball {
         radius: 10.0,
         extent: 7.0,
@@ -138,7 +138,7 @@ pub fn sphere(runner: &mut Runner) -> Result<Vec<Series>> {
     let pair = pair(10.0, true);
     let force = 4.0 * pair.modulus * ball.a.powi(3) / (3.0 * 10.0);
     // Tetrahedra of first order are stiff: four of them along the radius leave some percent.
-    let limits = [0.05, 0.03].map(|fit| Limits {
+    let limits = [0.05, 0.03].map(|fit| HertzLimits {
         force: 1e-6,
         curve: 0.15,
         fit,
@@ -162,7 +162,10 @@ pub fn sphere(runner: &mut Runner) -> Result<Vec<Series>> {
             let place = |[x, y, _]: [f64; 3]| x.hypot(y);
             list.push(record(&run, edge, [force, 4.0], &pair, finest, place)?);
         }
-        out.push(Series::new(format!("tetrahedra of order {order}"), list));
+        out.push(MeshSeries::new(
+            format!("tetrahedra of order {order}"),
+            list,
+        ));
     }
     Ok(out)
 }
@@ -202,13 +205,13 @@ pub fn scene_of(
 
 /// Half-width, peak and force beside Hertz's for the given force; the model has one `share`-th of the bodies.
 fn record(
-    run: &Run,
+    run: &SolvedScene,
     edge: f64,
     [force, share]: [f64; 2],
-    pair: &Pair,
-    finest: Option<&Limits>,
+    pair: &HertzPair,
+    finest: Option<&HertzLimits>,
     place: impl Fn([f64; 3]) -> f64,
-) -> Result<Mesh> {
+) -> Result<MeshResult> {
     let pressures = pressures(run, place);
     let measured = measure(&run.rows, &pressures).ok_or_else(|| {
         Error::not_converged(format!(
@@ -219,21 +222,22 @@ fn record(
     let theory = pair.under(force);
     let up = run.solved.scene.dim() - 1;
     let vertical = run.rows.iter().map(|r| r.multiplier * r.normal()[up].abs());
-    let limit = |of: fn(&Limits) -> f64| finest.map(of);
+    let limit = |of: fn(&HertzLimits) -> f64| finest.map(of);
     let (off, curve) = beside(&pressures, &theory);
     let values = vec![
-        Value::error("rms of p", off).within(limit(|l| l.curve)),
-        Value::beside("a", measured.fit.a, theory.a).within(limit(|l| l.fit)),
-        Value::beside("p0", measured.fit.p0, theory.p0).within(limit(|l| l.fit)),
-        Value::beside("force", share * vertical.sum::<f64>(), force).within(limit(|l| l.force)),
+        MeasuredValue::error("rms of p", off).within(limit(|l| l.curve)),
+        MeasuredValue::beside("a", measured.fit.a, theory.a).within(limit(|l| l.fit)),
+        MeasuredValue::beside("p0", measured.fit.p0, theory.p0).within(limit(|l| l.fit)),
+        MeasuredValue::beside("force", share * vertical.sum::<f64>(), force)
+            .within(limit(|l| l.force)),
     ];
     Ok(run.with_curve(format!("h = a/{:.3}", 1.0 / edge), edge, values, curve))
 }
 
 /// The pressures of the rows.
-pub fn pressures(run: &Run, place: impl Fn([f64; 3]) -> f64) -> Vec<Pressure> {
+pub fn pressures(run: &SolvedScene, place: impl Fn([f64; 3]) -> f64) -> Vec<NodalPressure> {
     let pressure = |row: &fetifeti::solution::SolvedRow| {
-        Some(Pressure {
+        Some(NodalPressure {
             x: place(row.label.point),
             value: row.pressure()?,
             weight: row.label.area,
@@ -244,7 +248,7 @@ pub fn pressures(run: &Run, place: impl Fn([f64; 3]) -> f64) -> Vec<Pressure> {
 }
 
 /// The root mean square of p − theory, relative to the theory's, and the pressures near the contact.
-fn beside(pressures: &[Pressure], theory: &Contact) -> (f64, Vec<Node>) {
+fn beside(pressures: &[NodalPressure], theory: &HertzContact) -> (f64, Vec<ReferencePressure>) {
     let mut squares = [0.0; 2];
     let mut curve = Vec::new();
     for p in pressures {
@@ -252,7 +256,7 @@ fn beside(pressures: &[Pressure], theory: &Contact) -> (f64, Vec<Node>) {
         squares[0] += p.weight * (p.value - reference).powi(2);
         squares[1] += p.weight * reference.powi(2);
         if p.x.abs() < 1.6 * theory.a {
-            curve.push(Node {
+            curve.push(ReferencePressure {
                 x: p.x / theory.a,
                 p: p.value / theory.p0,
                 reference: reference / theory.p0,

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::delaunay::{
-    along, build, graded, graded_arc, graded_line, quadratic, Groups, Planform, Solid,
+    along, build, graded, graded_arc, graded_line, quadratic, GroupNumbers, Planform, Solid,
 };
 use elements::kind::CellKind;
 use mesh::MeshFile;
@@ -15,7 +15,7 @@ const GROWTH: f64 = 0.5;
 const RATIO: f64 = 1.4;
 
 /// The size of elements, as a function of the place.
-pub struct Size {
+pub struct ElementSize {
     /// A length of the contact: the half-width.
     pub unit: f64,
     /// Edges in the contact, relative to the unit.
@@ -24,7 +24,7 @@ pub struct Size {
     pub most: f64,
 }
 
-impl Size {
+impl ElementSize {
     fn at(&self, distance: f64) -> f64 {
         let away = (distance / self.unit - 1.5).max(0.0);
         (self.edge * self.unit * (1.0 + GROWTH * away)).min(self.most)
@@ -44,16 +44,16 @@ const NAMES: [&str; 8] = [
 ];
 
 /// Two plane bodies that are being put together.
-struct Pair {
+struct TwoBodyMesh {
     points: Vec<[f64; 3]>,
     cells: Vec<Vec<u32>>,
     of_cell: Vec<usize>,
     order: usize,
 }
 
-impl Pair {
-    fn new(order: usize) -> Pair {
-        Pair {
+impl TwoBodyMesh {
+    fn new(order: usize) -> TwoBodyMesh {
+        TwoBodyMesh {
             points: Vec::new(),
             cells: Vec::new(),
             of_cell: Vec::new(),
@@ -90,7 +90,7 @@ impl Pair {
     /// The mesh; `side` is as in [`build`], with the number of the body.
     fn finish(self, name: &str, side: impl Fn([f64; 3], usize) -> usize) -> MeshFile {
         let kind = [CellKind::Triangle3, CellKind::Triangle6][self.order - 1];
-        let groups = Groups {
+        let groups = GroupNumbers {
             names: &NAMES,
             of_cell: self.of_cell,
         };
@@ -120,7 +120,7 @@ impl Roller {
         let (r, a, load) = (self.radius, self.a, self.load);
         let [width, depth] = self.block;
         let size = |edge: f64, most: f64| {
-            let size = Size {
+            let size = ElementSize {
                 unit: a,
                 edge,
                 most,
@@ -157,7 +157,7 @@ impl Roller {
             let near = length > 0.9 * r && ends.into_iter().all(on);
             near.then(|| [out[0] * r / length, r + out[1] * r / length])
         };
-        let mut pair = Pair::new(order);
+        let mut pair = TwoBodyMesh::new(order);
         pair.add(&outline, &upper, &curve, 1);
         let lower = size(edge, depth * edge.min(0.5));
         pair.add(&block(width, depth, &lower), &lower, &|_| None, 2);
@@ -207,7 +207,7 @@ impl Punch {
     pub fn mesh(&self, name: &str, edge: f64, order: usize) -> MeshFile {
         let (a, extent, flat) = (self.a, self.extent, self.flat);
         let size = |edge: f64| {
-            let size = Size {
+            let size = ElementSize {
                 unit: a,
                 edge,
                 most: extent * edge.min(0.5),
@@ -231,7 +231,7 @@ impl Punch {
             let x = 0.5 * (ends[0][0] + ends[1][0]);
             ends.into_iter().all(on).then(|| [x, self.bottom(x)])
         };
-        let mut pair = Pair::new(order);
+        let mut pair = TwoBodyMesh::new(order);
         pair.add(&outline, &fine, &curve, 1);
         let coarse = size(edge);
         pair.add(&block(extent, extent, &coarse), &coarse, &|_| None, 2);
@@ -276,7 +276,7 @@ impl Ball {
         let mut points = Vec::new();
         let (mut cells, mut of_cell) = (Vec::new(), Vec::new());
         for (body, edge) in [(1, edge / RATIO), (2, edge)] {
-            let size = Size {
+            let size = ElementSize {
                 unit: self.a,
                 edge,
                 most: 0.3 * self.extent,
@@ -297,7 +297,7 @@ impl Ball {
             cells.extend(solid.cells.into_iter().map(moved));
         }
         let kind = [CellKind::Tet4, CellKind::Tet10][order - 1];
-        let groups = Groups {
+        let groups = GroupNumbers {
             names: &SOLID_NAMES,
             of_cell,
         };

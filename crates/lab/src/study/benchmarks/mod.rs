@@ -17,88 +17,90 @@ mod units;
 use std::path::Path;
 
 pub use picture::{figure, markdown, table, text};
-pub use report::{BenchmarksReport, CaseReport, Mesh, Node, Series, Value};
+pub use report::{
+    BenchmarkReport, BenchmarksReport, MeasuredValue, MeshResult, MeshSeries, ReferencePressure,
+};
 use runner::Runner;
 
 use base::Result;
 use petsc::Session;
 
 /// The results of a case: its series, and why parts of it were not run.
-type Found = (Vec<Series>, Vec<String>);
+type CaseResults = (Vec<MeshSeries>, Vec<String>);
 
 /// A case of the study.
-struct Case {
+struct BenchmarkCase {
     name: &'static str,
     title: &'static str,
     reference: &'static str,
-    run: fn(&mut Runner) -> Result<Found>,
+    run: fn(&mut Runner) -> Result<CaseResults>,
 }
 
 /// All cases.
-const CASES: [Case; 11] = [
-    Case {
+const CASES: [BenchmarkCase; 11] = [
+    BenchmarkCase {
         name: "patch",
         title: "Contact patch test: two blocks with different meshes under a pressure of 1 from all sides",
         reference: "the stress is −1 everywhere, so that the pressure between the blocks is 1",
         run: |r| Ok((patch::run(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "rings",
         title: "Two rings in contact under p0 + p2 cos 2θ from outside; 2n × 3n and 2n × 4n elements",
         reference: "closed form: an Airy function in each ring (tests/data/rings.json)",
         run: |r| Ok((rings::pressed(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "shrink-fit",
         title: "A ring shrunk onto another one with an interference of 5 µm; 2n × 3n and 2n × 4n elements",
         reference: "closed form: Lamé's rings (tests/data/rings.json)",
         run: |r| Ok((rings::shrink(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "hertz-cylinder",
         title: "A steel cylinder (R = 10 mm) on an aluminium block, plane strain, a/R = 0.05",
         reference: "Hertz for half-spaces: a = √(4FR/(πE*)), p0 = 2F/(πa); F is what is applied",
         run: |r| Ok((hertz::cylinder(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "hertz-sphere",
         title: "A steel ball (R = 10 mm) on an aluminium block, a/R = 0.06",
         reference: "Hertz for half-spaces: a = (3FR/(4E*))^(1/3), p0 = 3F/(2πa²); F is what is applied",
         run: |r| Ok((hertz::sphere(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "roller",
         title: "NAFEMS/FENET contact benchmark 1 without friction: a steel roller (R = 50 mm) under 35 kN/mm on an \
                 aluminium block of 200 × 200 mm, plane strain",
         reference: "Hertz: a = √(4FR/(πE*)) = 6.21 mm, p0 = 2F/(πa) = 3585 N/mm² (NAFEMS states 6.2 mm and 3.6 GPa)",
         run: |r| Ok((hertz::roller(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "punch",
         title: "A flat punch (20 mm) with round edges (R = 500 mm) on a block, both steel, plane strain",
         reference: "Ciavarella, Hills and Monno (1998) for half-planes; F is what is applied",
         run: |r| Ok((punch::run(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "hueeber",
         title: "Two cubes on top of each other, decks of CalculiX's tests after Hüeber's thesis",
         reference: "the displacements that CalculiX printed (calculix-ccx-test), \
                     relative to the largest; CalculiX itself",
         run: decks::run,
     },
-    Case {
+    BenchmarkCase {
         name: "stack",
         title: "A stack of blocks with different meshes under their own weight; only the lowest is held",
         reference: "equilibrium: the force at each joint is the weight above",
         run: |r| Ok((stack::run(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "three",
         title: "Three bodies each of which touches both others, under different pressures from the side and from above",
         reference: "equilibrium: the stresses are constant, and the pressures at the joints are those outside",
         run: |r| Ok((three::run(r)?, Vec::new())),
     },
-    Case {
+    BenchmarkCase {
         name: "units",
         title: "The rings of SSNP167 in m, mm and µm",
         reference: "the scene in metres: relative differences",
@@ -130,7 +132,7 @@ pub fn run(
             progress: &mut *progress,
         };
         let (series, skipped) = (case.run)(&mut runner)?;
-        cases.push(CaseReport {
+        cases.push(BenchmarkReport {
             case: case.name.into(),
             title: case.title.into(),
             reference: case.reference.into(),

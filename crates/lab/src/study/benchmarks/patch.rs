@@ -1,6 +1,6 @@
 //! The contact patch test: two blocks of different meshes under the same pressure from all sides.
 
-use super::report::{Series, Value};
+use super::report::{MeasuredValue, MeshSeries};
 use super::runner::Runner;
 use base::Result;
 
@@ -8,7 +8,7 @@ use base::Result;
 const LIMIT: f64 = 1e-10;
 
 /// Both dimensions, a flat and an inclined common face, elements of both orders, both sides with the multipliers.
-pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let mut out = Vec::new();
     for dim in [2, 3] {
         for (slope, face) in [(0.0, "flat"), (0.1, "inclined")] {
@@ -24,13 +24,13 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
                         let text = scene(dim, order, element, slope, multipliers);
                         let run = runner.solve_to(&name, &text, None, 1e-12)?;
                         let worst = run.worst_pressure(1.0, |_| true);
-                        let value = Value::error("pressure", worst).within(Some(LIMIT));
+                        let value = MeasuredValue::error("pressure", worst).within(Some(LIMIT));
                         let label = format!("{kind}, multipliers on `{multipliers}`");
                         meshes.push(run.mesh(label, 1.0, vec![value]));
                     }
                 }
                 let place = ["plane", "space"][dim - 2];
-                out.push(Series::new(
+                out.push(MeshSeries::new(
                     format!("{place}, {face}, order {order}"),
                     meshes,
                 ));

@@ -1,14 +1,14 @@
 //! The results of the study: tables, and pictures of pressures and errors.
 
-use super::{BenchmarksReport, CaseReport, Mesh, Series, Value};
+use super::{BenchmarkReport, BenchmarksReport, MeasuredValue, MeshResult, MeshSeries};
 use report::drawing::canvas::Colour;
 use report::drawing::ticks::Scale;
-use report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series as Curve};
+use report::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series as Curve};
 use report::tables::table::{condition, scientific, value, Table};
 
 /// The names of the columns of a case and its rows.
-fn cells(case: &CaseReport) -> (Vec<String>, Vec<Vec<String>>) {
-    let mut quantities: Vec<&Value> = Vec::new();
+fn cells(case: &BenchmarkReport) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut quantities: Vec<&MeasuredValue> = Vec::new();
     for v in case.meshes().flat_map(|m| &m.values) {
         if quantities.iter().all(|q| q.quantity != v.quantity) {
             quantities.push(v);
@@ -22,7 +22,7 @@ fn cells(case: &CaseReport) -> (Vec<String>, Vec<Vec<String>>) {
         }
     }
     names.extend(["limit", "it", "κ", "steps", "s"].map(String::from));
-    let row = |s: &Series, m: &Mesh| {
+    let row = |s: &MeshSeries, m: &MeshResult| {
         let mut row = vec![s.name.clone(), m.mesh.clone(), m.dofs.to_string()];
         for q in &quantities {
             let found = m.values.iter().find(|v| v.quantity == q.quantity);
@@ -54,7 +54,7 @@ fn cells(case: &CaseReport) -> (Vec<String>, Vec<Vec<String>>) {
 }
 
 /// All meshes of a case.
-pub fn table(case: &CaseReport) -> Table {
+pub fn table(case: &BenchmarkReport) -> Table {
     let (names, rows) = cells(case);
     let mut columns = Table::of(rows);
     for (k, name) in names.into_iter().enumerate() {
@@ -68,7 +68,7 @@ pub fn table(case: &CaseReport) -> Table {
 }
 
 /// The remarks on a case beside its table.
-fn remarks(case: &CaseReport) -> String {
+fn remarks(case: &BenchmarkReport) -> String {
     let orders = case.series.iter();
     let orders: Vec<String> = orders
         .filter_map(|s| Some(format!("{} {:.2}", s.name, s.order?)))
@@ -126,14 +126,14 @@ pub fn markdown(report: &BenchmarksReport) -> String {
 
 /// The pressure on the finest mesh of every series beside the reference, and the error of the first value over the mesh
 /// size; `None` for a case without pressures along a line.
-pub fn figure(case: &CaseReport) -> Option<Figure> {
-    let finest = |s: &'_ Series| s.meshes.last().filter(|m| !m.curve.is_empty()).cloned();
-    let with_curve: Vec<(usize, Mesh)> = (case.series.iter().enumerate())
+pub fn figure(case: &BenchmarkReport) -> Option<Figure> {
+    let finest = |s: &'_ MeshSeries| s.meshes.last().filter(|m| !m.curve.is_empty()).cloned();
+    let with_curve: Vec<(usize, MeshResult)> = (case.series.iter().enumerate())
         .filter_map(|(k, s)| Some((k, finest(s)?)))
         .collect();
     with_curve.last()?;
     // Series that differ in the order of elements alone have one reference.
-    let problem = |s: &Series| {
+    let problem = |s: &MeshSeries| {
         s.name
             .split_once(", order")
             .map_or("", |(p, _)| p)
@@ -168,7 +168,7 @@ pub fn figure(case: &CaseReport) -> Option<Figure> {
         curves.push(
             Curve::new(case.series[*k].name.clone(), points, colour)
                 .marker(marker, k % 2 == 1, size)
-                .line(Line::None),
+                .line(LineStyle::None),
         );
     }
     let across = match case.case.as_str() {
@@ -184,7 +184,7 @@ pub fn figure(case: &CaseReport) -> Option<Figure> {
     let mut errors = Vec::new();
     let mut sizes = Vec::new();
     for (k, s) in case.series.iter().enumerate() {
-        let of = |m: &Mesh| Some((m.size, m.values.first()?.error.abs()));
+        let of = |m: &MeshResult| Some((m.size, m.values.first()?.error.abs()));
         let points: Vec<(f64, f64)> = s.meshes.iter().filter_map(of).collect();
         sizes.extend(points.iter().map(|p| p.0));
         let (marker, colour) = style(k);

@@ -16,9 +16,9 @@ use std::f64::consts::PI;
 
 use super::hertz::{pressures, scene_of};
 use super::meshes::Punch;
-use super::report::{Mesh, Node, Series, Value};
-use super::runner::{Run, Runner};
-use crate::study::hertz::Pressure;
+use super::report::{MeasuredValue, MeshResult, MeshSeries, ReferencePressure};
+use super::runner::{Runner, SolvedScene};
+use crate::study::hertz::NodalPressure;
 use base::Result;
 
 /// The contact of a punch with the flat half-width b.
@@ -64,7 +64,7 @@ impl Rounded {
 }
 
 /// A flat part of 20 mm, edges of radius 500 mm, steel on steel, a = 12.5 mm.
-pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let young: f64 = 210e3;
     let theory = Rounded {
         a: 12.5,
@@ -102,12 +102,12 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
             let run = runner.solve_mesh(&stem, &text, &mesh)?;
             list.push(record(&run, edge, &theory, k + 1 == edges.len()));
         }
-        out.push(Series::new(format!("triangles of order {order}"), list));
+        out.push(MeshSeries::new(format!("triangles of order {order}"), list));
     }
     Ok(out)
 }
 
-fn record(run: &Run, edge: f64, theory: &Rounded, finest: bool) -> Mesh {
+fn record(run: &SolvedScene, edge: f64, theory: &Rounded, finest: bool) -> MeshResult {
     let all = pressures(run, |[x, _, _]| x);
     let (mut squares, mut curve) = ([0.0; 2], Vec::new());
     let mean = theory.force() / (2.0 * theory.a);
@@ -119,7 +119,7 @@ fn record(run: &Run, edge: f64, theory: &Rounded, finest: bool) -> Mesh {
         peak = peak.max(p.value);
         expected = expected.max(reference);
         if p.x.abs() < 1.6 * theory.a {
-            curve.push(Node {
+            curve.push(ReferencePressure {
                 x: p.x / theory.a,
                 p: p.value / mean,
                 reference: reference / mean,
@@ -133,17 +133,18 @@ fn record(run: &Run, edge: f64, theory: &Rounded, finest: bool) -> Mesh {
         .sum();
     let within = |limit: f64| finest.then_some(limit);
     let values = vec![
-        Value::error("rms of p", (squares[0] / squares[1]).sqrt()).within(within(0.05)),
+        MeasuredValue::error("rms of p", (squares[0] / squares[1]).sqrt()).within(within(0.05)),
         // Half an edge.
-        Value::beside("a", half_width(&all), theory.a).within(within(0.6 * edge)),
-        Value::beside("peak at nodes", peak, expected).within(within((0.8 * edge).max(0.02))),
-        Value::beside("force", 2.0 * force, theory.force()).within(within(1e-6)),
+        MeasuredValue::beside("a", half_width(&all), theory.a).within(within(0.6 * edge)),
+        MeasuredValue::beside("peak at nodes", peak, expected)
+            .within(within((0.8 * edge).max(0.02))),
+        MeasuredValue::beside("force", 2.0 * force, theory.force()).within(within(1e-6)),
     ];
     run.with_curve(format!("h = a/{:.3}", 1.0 / edge), edge, values, curve)
 }
 
 /// The middle between the last node that touches and the next one.
-fn half_width(all: &[Pressure]) -> f64 {
+fn half_width(all: &[NodalPressure]) -> f64 {
     let touching = all.iter().filter(|p| p.active).map(|p| p.x);
     let last = touching.fold(0.0, f64::max);
     let beyond = all.iter().map(|p| p.x).filter(|x| *x > last);

@@ -8,12 +8,12 @@ pub struct BenchmarksReport {
     /// Its name, "benchmarks".
     pub study: String,
     /// One entry per case.
-    pub cases: Vec<CaseReport>,
+    pub cases: Vec<BenchmarkReport>,
 }
 
 /// One case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseReport {
+pub struct BenchmarkReport {
     /// Its name.
     pub case: String,
     /// The problem that is solved.
@@ -23,24 +23,24 @@ pub struct CaseReport {
     /// Why the case, or a part of it, was not run.
     pub skipped: Vec<String>,
     /// Meshes that belong together.
-    pub series: Vec<Series>,
+    pub series: Vec<MeshSeries>,
 }
 
 /// Meshes of one kind, from the coarsest to the finest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Series {
+pub struct MeshSeries {
     /// The name of the series: the property that its meshes have in common.
     pub name: String,
     /// Order of convergence of the first value: the slope of log(error) over log(mesh size), by least squares. `None`
     /// for a single mesh, and where errors are rounding.
     pub order: Option<f64>,
     /// The meshes.
-    pub meshes: Vec<Mesh>,
+    pub meshes: Vec<MeshResult>,
 }
 
 /// One mesh and its solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Mesh {
+pub struct MeshResult {
     /// The name of the mesh: the property that distinguishes it.
     pub mesh: String,
     /// Mesh size relative to a length of the case: the half-width of the contact, the length of a side.
@@ -50,9 +50,9 @@ pub struct Mesh {
     /// Unknowns.
     pub dofs: usize,
     /// Values beside their references.
-    pub values: Vec<Value>,
+    pub values: Vec<MeasuredValue>,
     /// The pressure along the contact.
-    pub curve: Vec<Node>,
+    pub curve: Vec<ReferencePressure>,
     /// Steps of the contact loop.
     pub outer_iterations: usize,
     /// Krylov iterations of all steps.
@@ -69,7 +69,7 @@ pub struct Mesh {
 
 /// A value beside its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Value {
+pub struct MeasuredValue {
     /// The name of the quantity.
     pub quantity: String,
     /// The value; `None`: the value is an error already.
@@ -84,7 +84,7 @@ pub struct Value {
 
 /// The pressure at a node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Node {
+pub struct ReferencePressure {
     /// Position along the contact.
     pub x: f64,
     /// Our pressure.
@@ -93,10 +93,10 @@ pub struct Node {
     pub reference: f64,
 }
 
-impl Value {
+impl MeasuredValue {
     /// A value beside its reference.
-    pub fn beside(quantity: &str, ours: f64, reference: f64) -> Value {
-        Value {
+    pub fn beside(quantity: &str, ours: f64, reference: f64) -> MeasuredValue {
+        MeasuredValue {
             quantity: quantity.into(),
             ours: Some(ours),
             reference: Some(reference),
@@ -106,8 +106,8 @@ impl Value {
     }
 
     /// An error.
-    pub fn error(quantity: &str, error: f64) -> Value {
-        Value {
+    pub fn error(quantity: &str, error: f64) -> MeasuredValue {
+        MeasuredValue {
             quantity: quantity.into(),
             ours: None,
             reference: None,
@@ -118,7 +118,7 @@ impl Value {
 
     /// States a tolerance, if there is one.
     #[must_use]
-    pub fn within(mut self, limit: Option<f64>) -> Value {
+    pub fn within(mut self, limit: Option<f64>) -> MeasuredValue {
         self.limit = limit;
         self
     }
@@ -130,10 +130,10 @@ impl Value {
     }
 }
 
-impl Series {
+impl MeshSeries {
     /// A series with its order of convergence.
-    pub fn new(name: impl Into<String>, meshes: Vec<Mesh>) -> Series {
-        Series {
+    pub fn new(name: impl Into<String>, meshes: Vec<MeshResult>) -> MeshSeries {
+        MeshSeries {
             name: name.into(),
             order: order(&meshes),
             meshes,
@@ -141,9 +141,9 @@ impl Series {
     }
 }
 
-/// As [`Series::order`].
-fn order(meshes: &[Mesh]) -> Option<f64> {
-    let first = |m: &Mesh| Some((m.size, m.values.first()?.error.abs()));
+/// As [`MeshSeries::order`].
+fn order(meshes: &[MeshResult]) -> Option<f64> {
+    let first = |m: &MeshResult| Some((m.size, m.values.first()?.error.abs()));
     let points: Vec<(f64, f64)> = meshes.iter().filter_map(first).collect();
     let rounding = points.iter().any(|(_, error)| *error < 1e-9);
     let same = points.iter().all(|(size, _)| *size == points[0].0);
@@ -162,9 +162,9 @@ fn order(meshes: &[Mesh]) -> Option<f64> {
     Some((xy - x * y) / (xx - x * x))
 }
 
-impl CaseReport {
+impl BenchmarkReport {
     /// All meshes.
-    pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
+    pub fn meshes(&self) -> impl Iterator<Item = &MeshResult> {
         self.series.iter().flat_map(|s| &s.meshes)
     }
 
@@ -192,8 +192,11 @@ impl CaseReport {
 }
 
 impl BenchmarksReport {
-    /// As [`CaseReport::missed`], of all cases.
+    /// As [`BenchmarkReport::missed`], of all cases.
     pub fn missed(&self) -> Vec<String> {
-        self.cases.iter().flat_map(CaseReport::missed).collect()
+        self.cases
+            .iter()
+            .flat_map(BenchmarkReport::missed)
+            .collect()
     }
 }

@@ -2,8 +2,8 @@
 
 use serde_json::Value as Json;
 
-use super::report::{Mesh, Node, Series, Value};
-use super::runner::{Run, Runner};
+use super::report::{MeasuredValue, MeshResult, MeshSeries, ReferencePressure};
+use super::runner::{Runner, SolvedScene};
 use base::{Error, Result};
 
 /// The closed form: an Airy function in each ring, with no shear and equal normal displacement between them.
@@ -93,7 +93,7 @@ impl Rings {
     }
 
     /// The record of a mesh; without tolerances unless `finest`.
-    fn measure(&self, run: &Run, n: usize, finest: Option<[f64; 2]>) -> Mesh {
+    fn measure(&self, run: &SolvedScene, n: usize, finest: Option<[f64; 2]>) -> MeshResult {
         let [mean, wave] = self.pressure;
         let (mut curve, mut squares, mut whole) = (Vec::new(), 0.0, 0.0);
         // Weighted least squares of p = m + w cos 2θ.
@@ -108,7 +108,7 @@ impl Rings {
             for (sum, term) in sums.iter_mut().zip([1.0, cos2, cos2 * cos2, p, p * cos2]) {
                 *sum += weight * term;
             }
-            curve.push(Node {
+            curve.push(ReferencePressure {
                 x: y.atan2(x).to_degrees(),
                 p: p / mean,
                 reference: reference / mean,
@@ -120,11 +120,11 @@ impl Rings {
         let rms = (squares / whole).sqrt() / mean;
         let limit = |k: usize| finest.map(|l| l[k]);
         let mut values = vec![
-            Value::error("rms of p / mean", rms).within(limit(0)),
-            Value::beside("mean p", m, mean).within(limit(1)),
+            MeasuredValue::error("rms of p / mean", rms).within(limit(0)),
+            MeasuredValue::beside("mean p", m, mean).within(limit(1)),
         ];
         if self.load[1] != 0.0 {
-            values.push(Value::beside("p of cos 2θ", w, wave).within(limit(1)));
+            values.push(MeasuredValue::beside("p of cos 2θ", w, wave).within(limit(1)));
         }
         let label = format!("n = {n}");
         run.with_curve(label, 1.0 / n as f64, values, curve)
@@ -132,7 +132,7 @@ impl Rings {
 }
 
 /// The two problems under pressure.
-pub fn pressed(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn pressed(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let cases = [
         ("Code_Aster's SSNP167", "rings_ssnp167"),
         ("two materials", "rings_two_materials"),
@@ -141,7 +141,7 @@ pub fn pressed(runner: &mut Runner) -> Result<Vec<Series>> {
 }
 
 /// The shrink fit.
-pub fn shrink(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn shrink(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let meshes: &[usize] = if runner.quick {
         &[4, 8, 16]
     } else {
@@ -156,7 +156,7 @@ fn series(
     cases: &[(&str, &str)],
     rows: [usize; 2],
     meshes: &[usize],
-) -> Result<Vec<Series>> {
+) -> Result<Vec<MeshSeries>> {
     let mut out = Vec::new();
     for (&(title, name), row) in cases.iter().zip(rows) {
         let rings = Rings::read(row)?;
@@ -172,7 +172,7 @@ fn series(
                 let finest = (k + 1 == meshes.len()).then_some([1.2e-3, 1e-3]);
                 list.push(rings.measure(&run, n, finest));
             }
-            out.push(Series::new(format!("{title}, order {order}"), list));
+            out.push(MeshSeries::new(format!("{title}, order {order}"), list));
         }
     }
     Ok(out)

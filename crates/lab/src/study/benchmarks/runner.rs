@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::report::{Mesh, Node, Value};
+use super::report::{MeasuredValue, MeshResult, ReferencePressure};
 use crate::study::solved::Solved;
 use base::Result;
 use fetifeti::settings::MethodSettings;
@@ -30,7 +30,7 @@ pub struct Runner<'a> {
 }
 
 /// A scene and its solution.
-pub struct Run {
+pub struct SolvedScene {
     /// The file of the scene.
     pub file: String,
     /// The solution.
@@ -44,7 +44,7 @@ impl Runner<'_> {
     ///
     /// # Errors
     /// Those of the disk, of the scene and of the method.
-    pub fn solve(&mut self, name: &str, text: &str) -> Result<Run> {
+    pub fn solve(&mut self, name: &str, text: &str) -> Result<SolvedScene> {
         self.solve_to(name, text, None, RTOL)
     }
 
@@ -52,7 +52,7 @@ impl Runner<'_> {
     ///
     /// # Errors
     /// As [`Runner::solve`].
-    pub fn solve_mesh(&mut self, name: &str, text: &str, mesh: &MeshFile) -> Result<Run> {
+    pub fn solve_mesh(&mut self, name: &str, text: &str, mesh: &MeshFile) -> Result<SolvedScene> {
         self.solve_to(name, text, Some(mesh), RTOL)
     }
 
@@ -66,7 +66,7 @@ impl Runner<'_> {
         text: &str,
         mesh: Option<&MeshFile>,
         rtol: f64,
-    ) -> Result<Run> {
+    ) -> Result<SolvedScene> {
         (self.progress)(&format!("{}, {name}", self.case));
         let file = format!("{name}.toml");
         let path = self.dir.join(&file);
@@ -85,20 +85,25 @@ impl Runner<'_> {
         let settings = MethodSettings::default().rtol(rtol);
         let solved = Solved::new(self.session, &path.display().to_string(), text, &settings)?;
         let rows = solved.rows(self.session);
-        Ok(Run { file, solved, rows })
+        Ok(SolvedScene { file, solved, rows })
     }
 }
 
-impl Run {
+impl SolvedScene {
     /// The record of this mesh.
-    pub fn mesh(&self, mesh: impl Into<String>, size: f64, values: Vec<Value>) -> Mesh {
+    pub fn mesh(
+        &self,
+        mesh: impl Into<String>,
+        size: f64,
+        values: Vec<MeasuredValue>,
+    ) -> MeshResult {
         let solution = &self.solved.solution;
         // A step of few iterations knows little of the spectrum.
         let estimates = solution.steps.iter().map(|s| s.estimate);
         let estimates = estimates.chain([solution.estimate]).flatten();
         let kappa = estimates.map(|s| s.lambda_max / s.lambda_min);
         let kappa = kappa.reduce(f64::max);
-        Mesh {
+        MeshResult {
             mesh: mesh.into(),
             size,
             scene: self.file.clone(),
@@ -119,11 +124,11 @@ impl Run {
         &self,
         mesh: impl Into<String>,
         size: f64,
-        values: Vec<Value>,
-        mut curve: Vec<Node>,
-    ) -> Mesh {
+        values: Vec<MeasuredValue>,
+        mut curve: Vec<ReferencePressure>,
+    ) -> MeshResult {
         curve.sort_by(|a, b| a.x.total_cmp(&b.x));
-        Mesh {
+        MeshResult {
             curve,
             ..self.mesh(mesh, size, values)
         }

@@ -1,7 +1,7 @@
 //! A stack of blocks under their own weight: only the lowest is held, and no spring or penalty holds the others.
 
-use super::report::{Series, Value};
-use super::runner::{Run, Runner};
+use super::report::{MeasuredValue, MeshSeries};
+use super::runner::{Runner, SolvedScene};
 use base::Result;
 use fetifeti::problem::RowSource;
 
@@ -12,7 +12,7 @@ const LIMIT: f64 = 1e-8;
 const HEIGHT: f64 = 0.5;
 
 /// Stacks of blocks in the plane and in space.
-pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let mut out = Vec::new();
     let counts: [&[usize]; 2] = if runner.quick {
         [&[10], &[5]]
@@ -27,11 +27,12 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
                 format!("{n} blocks"),
                 1.0,
                 vec![
-                    Value::error("force at a joint / weight", forces(&run, n)).within(Some(LIMIT)),
-                ],
+                        MeasuredValue::error("force at a joint / weight", forces(&run, n))
+                            .within(Some(LIMIT)),
+                    ],
             ));
         }
-        out.push(Series::new(["plane", "space"][dim - 2], list));
+        out.push(MeshSeries::new(["plane", "space"][dim - 2], list));
     }
     Ok(out)
 }
@@ -42,7 +43,7 @@ fn weight(k: usize) -> f64 {
 }
 
 /// The largest difference of the force at a joint from the weight above, relative to the whole weight.
-fn forces(run: &Run, n: usize) -> f64 {
+fn forces(run: &SolvedScene, n: usize) -> f64 {
     let above = |k: usize| 2.0 * HEIGHT * (k + 1..n).map(weight).sum::<f64>();
     let mut found = vec![0.0; n - 1];
     for row in &run.rows {

@@ -1,6 +1,6 @@
 //! Three bodies each of which touches both others: two blocks side by side, and a third one on both.
 
-use super::report::{Series, Value};
+use super::report::{MeasuredValue, MeshSeries};
 use super::runner::Runner;
 use base::Result;
 
@@ -12,7 +12,7 @@ const SIDE: f64 = 2.0;
 const TOP: f64 = 3.0;
 
 /// In the plane and in space. Every body has the stresses −2 and −3, which are the pressures at the joints.
-pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let mut out = Vec::new();
     for dim in [2, 3] {
         for order in [1, 2] {
@@ -23,13 +23,13 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
                 let up = run.worst_pressure(TOP, |r| r.normal()[1].abs() > 0.5);
                 let side = run.worst_pressure(SIDE, |r| r.normal()[0].abs() > 0.5);
                 let values = vec![
-                    Value::error("pressure from above", up).within(Some(LIMIT)),
-                    Value::error("pressure from the side", side).within(Some(LIMIT)),
+                    MeasuredValue::error("pressure from above", up).within(Some(LIMIT)),
+                    MeasuredValue::error("pressure from the side", side).within(Some(LIMIT)),
                 ];
                 list.push(run.mesh(format!("n = {n}"), 1.0 / n as f64, values));
             }
             let place = ["plane", "space"][dim - 2];
-            out.push(Series::new(format!("{place}, order {order}"), list));
+            out.push(MeshSeries::new(format!("{place}, order {order}"), list));
         }
     }
     Ok(out)

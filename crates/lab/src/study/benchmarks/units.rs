@@ -1,6 +1,6 @@
 //! One scene in metres, millimetres and micrometres.
 
-use super::report::{Series, Value};
+use super::report::{MeasuredValue, MeshSeries};
 use super::rings::{Rings, Units};
 use super::runner::Runner;
 use base::Result;
@@ -15,7 +15,7 @@ const LIMIT: f64 = 1e-12;
 const ITERATIONS: f64 = 2.0;
 
 /// The rings of SSNP167, elements of first and second order.
-pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
+pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let rings = Rings::read(0)?;
     let mut out = Vec::new();
     for order in [1, 2] {
@@ -50,13 +50,13 @@ pub fn run(runner: &mut Runner) -> Result<Vec<Series>> {
                 .map(|(a, b)| a.abs_diff(*b))
                 .sum::<usize>();
             let values = vec![
-                Value::error("pressures", worst).within(Some(LIMIT)),
-                Value::error("energy", energy / *energy0 - 1.0).within(Some(LIMIT)),
-                Value::error("steps and iterations", steps as f64).within(Some(ITERATIONS)),
+                MeasuredValue::error("pressures", worst).within(Some(LIMIT)),
+                MeasuredValue::error("energy", energy / *energy0 - 1.0).within(Some(LIMIT)),
+                MeasuredValue::error("steps and iterations", steps as f64).within(Some(ITERATIONS)),
             ];
             list.push(run.mesh(name, 1.0, values));
         }
-        out.push(Series::new(format!("rings, order {order}"), list));
+        out.push(MeshSeries::new(format!("rings, order {order}"), list));
     }
     Ok(out)
 }

@@ -16,10 +16,10 @@ pub struct KnownDisplacement {
 }
 
 /// Name, what is hard, the deck, and what is known.
-type Deck = (&'static str, &'static str, &'static str, KnownDisplacement);
+type HardDeck = (&'static str, &'static str, &'static str, KnownDisplacement);
 
 /// One a row.
-const DECKS: [Deck; 3] = [
+const DECKS: [HardDeck; 3] = [
     (
         "wedge-column",
         "a pulled column of C3D6, each of which can turn against the next without energy",
@@ -61,7 +61,7 @@ const DECKS: [Deck; 3] = [
 
 /// All of them.
 pub fn decks() -> Vec<HardCase> {
-    let case = |(name, title, text, point): Deck| HardCase {
+    let case = |(name, title, text, point): HardDeck| HardCase {
         name,
         title: title.into(),
         text: text.into(),

@@ -15,7 +15,7 @@ pub use trackers::{trackers, KnownForce};
 use serde::{Deserialize, Serialize};
 
 use super::solved::Solved;
-use crate::assembled::layout::Layout;
+use crate::assembled::layout::UnknownLayout;
 use crate::assembled::reference::Reference;
 use crate::assembled::system::Copies;
 use base::{Error, Result};
@@ -40,7 +40,7 @@ const SPECTRUM: [usize; 2] = [1200, 400];
 /// How a case ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum HardCaseOutcome {
     /// Converged, and near the direct solution.
     Solved,
     /// The solver says that it did not converge.
@@ -52,14 +52,14 @@ pub enum Verdict {
     Wrong,
 }
 
-impl Verdict {
+impl HardCaseOutcome {
     /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
-            Verdict::Solved => "solved",
-            Verdict::NotConverged => "not converged (said so)",
-            Verdict::Refused => "no solution (said so)",
-            Verdict::Wrong => "WRONG",
+            HardCaseOutcome::Solved => "solved",
+            HardCaseOutcome::NotConverged => "not converged (said so)",
+            HardCaseOutcome::Refused => "no solution (said so)",
+            HardCaseOutcome::Wrong => "WRONG",
         }
     }
 }
@@ -114,7 +114,7 @@ pub struct Record {
     /// The largest residual of the direct solution; `None` where there is no direct solution.
     pub reference: Option<f64>,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: HardCaseOutcome,
     /// The program's message, where it did not solve the case.
     pub message: Option<String>,
     /// Seconds of assembly, set-up and solve.
@@ -124,7 +124,9 @@ pub struct Record {
 impl HardCasesReport {
     /// The cases that are wrong.
     pub fn wrong(&self) -> impl Iterator<Item = &Record> {
-        self.cases.iter().filter(|c| c.verdict == Verdict::Wrong)
+        self.cases
+            .iter()
+            .filter(|c| c.verdict == HardCaseOutcome::Wrong)
     }
 }
 
@@ -176,11 +178,11 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         // The scene has been read: a refusal from here on says that it has no solution.
         Err(e) if refused_or_failed(&e) => {
             record.message = Some(e.to_string());
-            let exists = Reference::certified(session, &scene, &Layout::new(&scene)).is_ok();
+            let exists = Reference::certified(session, &scene, &UnknownLayout::new(&scene)).is_ok();
             record.verdict = match (exists, e.is_not_converged()) {
-                (true, false) => Verdict::Wrong,
-                (true, true) => Verdict::NotConverged,
-                (false, _) => Verdict::Refused,
+                (true, false) => HardCaseOutcome::Wrong,
+                (true, true) => HardCaseOutcome::NotConverged,
+                (false, _) => HardCaseOutcome::Refused,
             };
             return Ok(record);
         }
@@ -247,7 +249,7 @@ fn displacement(session: &Session, solved: &Solved, known: &KnownDisplacement) -
 /// Compares with the direct solution.
 fn compare(session: &Session, solved: &Solved, record: &mut Record) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
-    let layout = Layout::new(&solved.scene);
+    let layout = UnknownLayout::new(&solved.scene);
     if let Some(trouble) = &layout.trouble {
         record.undecided = Some(trouble.clone());
         return Ok(());
@@ -297,11 +299,11 @@ fn judge(solved: &Solved, case: &HardCase, record: &mut Record) {
     let balanced = within(case.force.map(|k| k.within), record.force)
         && within(case.point.map(|k| k.within), record.displacement);
     record.verdict = match (solved.solution.converged(), right && balanced) {
-        (false, _) => Verdict::NotConverged,
-        (true, true) => Verdict::Solved,
-        (true, false) => Verdict::Wrong,
+        (false, _) => HardCaseOutcome::NotConverged,
+        (true, true) => HardCaseOutcome::Solved,
+        (true, false) => HardCaseOutcome::Wrong,
     };
-    if record.verdict == Verdict::NotConverged {
+    if record.verdict == HardCaseOutcome::NotConverged {
         record.message = Some(solved.solution.status.to_string());
     }
 }

@@ -21,7 +21,7 @@ fn body(name: &str, place: &str, keys: &str) -> String {
 }
 
 /// Lower left corner, size, elements and subdomains.
-fn place(origin: &str, size: &str, elements: &str, subdomains: &str) -> String {
+fn tracker_scene(origin: &str, size: &str, elements: &str, subdomains: &str) -> String {
     format!("origin = {origin}\nsize = {size}\nelements = {elements}\nsubdomains = {subdomains}\n")
 }
 
@@ -45,12 +45,12 @@ fn plank() -> HardCase {
     let elastic = "young = 1e9\npoisson = 0.3\n";
     let plank = body(
         "plank",
-        &place("[-0.3, -10]", "[0.6, 20]", "[2, 67]", "[2, 1]"),
+        &tracker_scene("[-0.3, -10]", "[0.6, 20]", "[2, 67]", "[2, 1]"),
         &format!("{elastic}dirichlet = {{ left = {{ x = 0 }}, bottom = {{ y = 0 }} }}\n"),
     );
     let block = body(
         "block",
-        &place("[0.31, 9.2]", "[0.6, 0.8]", "[4, 4]", "[2, 2]"),
+        &tracker_scene("[0.31, 9.2]", "[0.6, 0.8]", "[4, 4]", "[2, 2]"),
         &format!("{elastic}dirichlet = {{ right = [\"-0.011 + 0.02*(y - 9.6)\", 0] }}\n"),
     );
     HardCase {
@@ -71,12 +71,12 @@ fn plank() -> HardCase {
 fn facets() -> HardCase {
     let bowl = body(
         "bowl",
-        &place("[0, 0]", "[4, 1]", "[8, 4]", "[2, 2]"),
+        &tracker_scene("[0, 0]", "[4, 1]", "[8, 4]", "[2, 2]"),
         "shape = { y = \"y*(0.6 + 0.1*(x - 2)^2)\" }\ndirichlet = [\"bottom\"]\n",
     );
     let round = body(
         "round",
-        &place("[0, 1]", "[4, 1]", "[16, 4]", "[4, 2]"),
+        &tracker_scene("[0, 1]", "[4, 1]", "[16, 4]", "[4, 2]"),
         "shape = { y = \"y - (2 - y)*(0.4 - 0.16*(x - 2)^2)\" }\ndirichlet = { left = { x = 0 } }\n\
          traction = { top = [0, \"-0.01*(1 + 0.2*(x - 2))\"] }\n",
     );
@@ -101,12 +101,12 @@ fn facets() -> HardCase {
 fn solids(lower: &str, upper: &str) -> String {
     let lower = body(
         "lower",
-        &place("[0, 0, 0]", "1", "[4, 4, 4]", "[2, 2, 2]"),
+        &tracker_scene("[0, 0, 0]", "1", "[4, 4, 4]", "[2, 2, 2]"),
         lower,
     );
     let upper = body(
         "upper",
-        &place("[0, 1, 0]", "1", "[6, 3, 6]", "[2, 1, 2]"),
+        &tracker_scene("[0, 1, 0]", "1", "[6, 3, 6]", "[2, 1, 2]"),
         upper,
     );
     format!(
@@ -153,12 +153,12 @@ fn at_rest() -> HardCase {
 fn incompressible() -> HardCase {
     let rubber = body(
         "rubber",
-        &place("[0, 0]", "[2, 1]", "[16, 8]", "[4, 2]"),
+        &tracker_scene("[0, 0]", "[2, 1]", "[16, 8]", "[4, 2]"),
         "young = 1\npoisson = 0.49999\ndirichlet = { bottom = 0, left = { x = 0 }, right = { x = 0 } }\n",
     );
     let punch = body(
         "punch",
-        &place("[0.5, 1]", "[1, 0.5]", "[12, 6]", "[2, 2]"),
+        &tracker_scene("[0.5, 1]", "[1, 0.5]", "[12, 6]", "[2, 2]"),
         "shape = { y = \"y + 0.6*(x - 1)^2*(1.5 - y)\" }\nyoung = 100\npoisson = 0.3\n\
          dirichlet = { top = { x = 0 } }\ntraction = { top = [0, -0.1] }\n",
     );
@@ -184,7 +184,7 @@ fn incompressible() -> HardCase {
 fn press_fit() -> HardCase {
     let [inner, joint, outer, overlap, young, length] = [10.0f64, 20.0, 30.0, 2.5e-3, 196e3, 19.0];
     let ring = |name: &str, from: f64, to: f64, mesh: [&str; 2]| {
-        let place = place(
+        let place = tracker_scene(
             &format!("[{from}, 0]"),
             &format!("[{}, {length}]", to - from),
             mesh[0],
@@ -224,17 +224,17 @@ fn tied() -> HardCase {
     let pushed = "traction = { front = [0, 5e5, 0] }\n";
     let foot = body(
         "foot",
-        &place("[0, -0.5, 0]", "[1, 1, 2]", "[2, 2, 4]", "[1, 1, 2]"),
+        &tracker_scene("[0, -0.5, 0]", "[1, 1, 2]", "[2, 2, 4]", "[1, 1, 2]"),
         &held,
     );
     let head = body(
         "head",
-        &place("[0, -0.5, 2]", "[1, 1, 2]", "[3, 3, 6]", "[1, 1, 2]"),
+        &tracker_scene("[0, -0.5, 2]", "[1, 1, 2]", "[3, 3, 6]", "[1, 1, 2]"),
         &format!("{elastic}{pushed}"),
     );
     let beam = body(
         "beam",
-        &place("[3.5, -0.5, 0]", "[1, 1, 4]", "[2, 2, 8]", "[1, 1, 2]"),
+        &tracker_scene("[3.5, -0.5, 0]", "[1, 1, 4]", "[2, 2, 8]", "[1, 1, 2]"),
         &format!("{held}{pushed}"),
     );
     HardCase {
@@ -256,7 +256,7 @@ fn tied() -> HardCase {
 /// Two fractures that cross, all four pieces with meshes of their own.
 fn crossing() -> HardCase {
     let piece = |name: &str, at: [usize; 2], n: usize, parts: usize, given: &str| {
-        let place = place(&format!("{at:?}"), "1", &n.to_string(), &parts.to_string());
+        let place = tracker_scene(&format!("{at:?}"), "1", &n.to_string(), &parts.to_string());
         body(name, &place, &format!("dirichlet = {{ {given} }}\n"))
     };
     let pieces = [

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::theory::{Contact, Pair};
+use super::theory::{HertzContact, HertzPair};
 use base::linalg::vec3::dot;
 use fetifeti::problem::BodyNode;
 use fetifeti::solution::SolvedRow;
@@ -10,7 +10,7 @@ use scene::Scene;
 
 /// The pressure at a node that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pressure {
+pub struct NodalPressure {
     /// Signed distance from the middle; for a ball, the distance from the axis.
     pub x: f64,
     /// Multiplier over nodal length or area.
@@ -23,20 +23,20 @@ pub struct Pressure {
 
 /// The measured properties of the contact zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
+pub struct MeasuredContact {
     /// Sum of the multipliers: the force of the modelled part.
     pub force: f64,
     /// The half-width a and the peak p0 of the curve p² = p0² (1 − x²/a²) fitted to the pressures.
-    pub fit: Contact,
+    pub fit: HertzContact,
     /// The position of the last node that touches, and the largest nodal pressure.
-    pub nodal: Contact,
+    pub nodal: HertzContact,
     /// Nodes that touch.
     pub active: usize,
 }
 
 /// The nodal pressures. The rows must be those of one contact between facing sides, or of one plane obstacle, around
 /// the origin.
-pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
+pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<NodalPressure> {
     let mut normals: HashMap<(usize, usize), HashMap<usize, [f64; 3]>> = HashMap::new();
     // The integral of N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on
     // the tangent plane.
@@ -55,7 +55,7 @@ pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
         .filter_map(|row| {
             let [x, _, z] = row.label.point;
             let weight = projected_area(row)?;
-            Some(Pressure {
+            Some(NodalPressure {
                 x: if scene.dim() == 2 { x } else { x.hypot(z) },
                 value: row.multiplier / weight,
                 weight,
@@ -66,13 +66,13 @@ pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
 }
 
 /// Force, half-width and peak; `None` where fewer than three nodes touch.
-pub fn measure(rows: &[SolvedRow], pressures: &[Pressure]) -> Option<Measured> {
+pub fn measure(rows: &[SolvedRow], pressures: &[NodalPressure]) -> Option<MeasuredContact> {
     let force = rows
         .iter()
         .filter(|r| r.is_inequality())
         .map(|r| r.multiplier)
         .sum();
-    let active: Vec<&Pressure> = pressures.iter().filter(|p| p.active).collect();
+    let active: Vec<&NodalPressure> = pressures.iter().filter(|p| p.active).collect();
     let last = active.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
     let peak = active.iter().map(|p| p.value).fold(0.0, f64::max);
     // Nodes at the edge carry the pressure of half a neighbourhood; they are left out of the fit.
@@ -89,18 +89,18 @@ pub fn measure(rows: &[SolvedRow], pressures: &[Pressure]) -> Option<Measured> {
     let det = n * ss - s * s;
     let (b, c) = ((y * ss - s * sy) / det, (s * y - n * sy) / det);
     let good = active.len() > 3 && b > 0.0 && c > 0.0;
-    good.then(|| Measured {
+    good.then(|| MeasuredContact {
         force,
-        fit: Contact {
+        fit: HertzContact {
             a: (b / c).sqrt(),
             p0: b.sqrt(),
         },
-        nodal: Contact { a: last, p0: peak },
+        nodal: HertzContact { a: last, p0: peak },
         active: active.len(),
     })
 }
 
 /// The theory for the measured force; `share`: the whole force over that of the modelled part.
-pub fn theory(pair: &Pair, measured: &Measured, share: f64) -> Contact {
+pub fn theory(pair: &HertzPair, measured: &MeasuredContact, share: f64) -> HertzContact {
     pair.under(share * measured.force)
 }

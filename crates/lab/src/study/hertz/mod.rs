@@ -9,10 +9,10 @@ mod picture;
 mod scenes;
 mod theory;
 
-pub use measure::{measure, pressures, Measured, Pressure};
+pub use measure::{measure, pressures, MeasuredContact, NodalPressure};
 pub use picture::{csv, figure, table, text};
 pub use scenes::HertzCase;
-pub use theory::{Contact, Elastic, Pair};
+pub use theory::{Elastic, HertzContact, HertzPair};
 
 use serde::{Deserialize, Serialize};
 
@@ -28,25 +28,25 @@ pub struct HertzReport {
     /// Its name, "hertz".
     pub study: String,
     /// One entry per problem.
-    pub cases: Vec<CaseReport>,
+    pub cases: Vec<HertzProblem>,
 }
 
 /// One problem on several meshes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseReport {
+pub struct HertzProblem {
     /// `cylinder`, `two_cylinders` or `sphere`.
     pub case: String,
     /// A description.
     pub title: String,
-    /// Order of convergence of the pressures, see [`CaseReport::order`].
+    /// Order of convergence of the pressures, see [`HertzProblem::order`].
     pub order: f64,
     /// From the coarsest to the finest.
-    pub meshes: Vec<Mesh>,
+    pub meshes: Vec<HertzMesh>,
 }
 
 /// One mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Mesh {
+pub struct HertzMesh {
     /// Elements from pole to rim, and from pole to flat side.
     pub elements: usize,
     /// Unknowns.
@@ -56,9 +56,9 @@ pub struct Mesh {
     /// Force on the whole body: that on both (all four) symmetric parts together.
     pub force: f64,
     /// Half-width a.
-    pub half_width: Quantity,
+    pub half_width: HertzQuantity,
     /// Peak pressure p0.
-    pub peak: Quantity,
+    pub peak: HertzQuantity,
     /// Root mean square of pressure − theory over all nodes, relative to the theory's.
     pub curve: f64,
     /// Steps of the contact loop.
@@ -72,12 +72,12 @@ pub struct Mesh {
     /// Seconds of assembly, set-up and solve.
     pub seconds: f64,
     /// The nodal pressures, by distance.
-    pub pressure: Vec<Node>,
+    pub pressure: Vec<HertzPressure>,
 }
 
 /// A quantity of the theory, measured in two ways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Quantity {
+pub struct HertzQuantity {
     /// By Hertz's formula.
     pub theory: f64,
     /// By the fit of p² = p0² (1 − x²/a²) to the nodal pressures.
@@ -90,7 +90,7 @@ pub struct Quantity {
 
 /// A nodal pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Node {
+pub struct HertzPressure {
     /// Distance from the middle.
     pub x: f64,
     /// Pressure.
@@ -99,9 +99,9 @@ pub struct Node {
     pub theory: f64,
 }
 
-impl Quantity {
-    fn new(theory: f64, fit: f64, node: f64) -> Quantity {
-        Quantity {
+impl HertzQuantity {
+    fn new(theory: f64, fit: f64, node: f64) -> HertzQuantity {
+        HertzQuantity {
             theory,
             fit,
             node,
@@ -137,10 +137,10 @@ pub fn run(
             progress(&format!("{of}, {}, {n} elements per radius", case.name()));
             list.push(mesh(session, case, n)?);
         }
-        cases.push(CaseReport {
+        cases.push(HertzProblem {
             case: case.name().into(),
             title: case.title().into(),
-            order: CaseReport::order(&list),
+            order: HertzProblem::order(&list),
             meshes: list,
         });
     }
@@ -154,7 +154,7 @@ pub fn run(
 ///
 /// # Errors
 /// As [`run`].
-pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
+pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<HertzMesh> {
     let settings = MethodSettings::default().rtol(1e-8);
     let name = format!("hertz_{}_{n}.toml", case.name());
     let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
@@ -173,23 +173,23 @@ pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
         squares[0] += p.weight * (p.value - hertz).powi(2);
         squares[1] += p.weight * hertz.powi(2);
     }
-    let mut pressure: Vec<Node> = pressures
+    let mut pressure: Vec<HertzPressure> = pressures
         .iter()
         .filter(|p| p.x.abs() < 3.0 * theory.a)
-        .map(|p| Node {
+        .map(|p| HertzPressure {
             x: p.x,
             p: p.value,
             theory: theory.pressure(p.x),
         })
         .collect();
     pressure.sort_by(|a, b| a.x.total_cmp(&b.x));
-    Ok(Mesh {
+    Ok(HertzMesh {
         elements: n,
         dofs: solved.dofs(),
         active: measured.active,
         force: case.share() * measured.force,
-        half_width: Quantity::new(theory.a, measured.fit.a, measured.nodal.a),
-        peak: Quantity::new(theory.p0, measured.fit.p0, measured.nodal.p0),
+        half_width: HertzQuantity::new(theory.a, measured.fit.a, measured.nodal.a),
+        peak: HertzQuantity::new(theory.p0, measured.fit.p0, measured.nodal.p0),
         curve: (squares[0] / squares[1]).sqrt(),
         outer_iterations: solution.steps.len(),
         iterations: solution.iterations,
@@ -200,14 +200,14 @@ pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
     })
 }
 
-impl CaseReport {
+impl HertzProblem {
     /// The finest mesh.
-    pub fn finest(&self) -> &Mesh {
+    pub fn finest(&self) -> &HertzMesh {
         self.meshes.last().expect("a study has meshes")
     }
 
     /// The largest error of half-width and peak on a mesh.
-    pub fn error(mesh: &Mesh) -> f64 {
+    pub fn error(mesh: &HertzMesh) -> f64 {
         mesh.half_width.error.abs().max(mesh.peak.error.abs())
     }
 
@@ -215,7 +215,7 @@ impl CaseReport {
     /// log(elements), by least squares. Within one element at the edge of the contact zone the root is approximated by
     /// a straight line, so that an order of about 1 is to be expected. The gain from one mesh to the next depends on
     /// where their nodes happen to lie.
-    pub fn order(meshes: &[Mesh]) -> f64 {
+    pub fn order(meshes: &[HertzMesh]) -> f64 {
         let n = meshes.len() as f64;
         let logs = meshes
             .iter()
@@ -235,6 +235,6 @@ impl CaseReport {
     pub fn holds(&self) -> bool {
         self.meshes.iter().all(|m| m.converged)
             && self.order > 0.7
-            && CaseReport::error(self.finest()) < 0.02
+            && HertzProblem::error(self.finest()) < 0.02
     }
 }

@@ -1,9 +1,9 @@
 //! The results of the study: the table, the nodal pressures as CSV, and their picture with the theory.
 
-use super::{CaseReport, Contact, HertzReport, Mesh};
+use super::{HertzContact, HertzMesh, HertzProblem, HertzReport};
 use report::drawing::canvas::Colour;
 use report::drawing::ticks::Scale;
-use report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use report::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 use report::tables::table::Table;
 
 /// All meshes of all problems.
@@ -51,7 +51,7 @@ pub fn text(report: &HertzReport) -> String {
 }
 
 /// The nodal pressures of all meshes of one problem.
-pub fn csv(case: &CaseReport) -> Table {
+pub fn csv(case: &HertzProblem) -> Table {
     let meshes = case.meshes.iter();
     let nodes = meshes.flat_map(|m| m.pressure.iter().map(move |node| (m, node)));
     Table::of(nodes)
@@ -63,8 +63,8 @@ pub fn csv(case: &CaseReport) -> Table {
 }
 
 /// A figure of pressure over distance in units of the theory, and of the errors over the mesh.
-pub fn figure(case: &CaseReport) -> Figure {
-    let hertz = Contact { a: 1.0, p0: 1.0 };
+pub fn figure(case: &HertzProblem) -> Figure {
+    let hertz = HertzContact { a: 1.0, p0: 1.0 };
     let curve: Vec<(f64, f64)> = (0..=400)
         .map(|k| {
             let x = -1.5 + 3.0 * f64::from(k) / 400.0;
@@ -86,13 +86,13 @@ pub fn figure(case: &CaseReport) -> Figure {
         series.push(
             Series::new(label, points, Colour::CYCLE[[4, 2, 0][k]])
                 .marker(markers[k], k == 2, [5.0, 4.0, 2.6][k])
-                .line(Line::None),
+                .line(LineStyle::None),
         );
     }
     let [x, y] = ["x / a", "p / p_{0}"].map(|name| Axis::new(name, Scale::Linear));
     let pressure = Panel::new("Nodal pressure", x, y, series);
     let counts: Vec<f64> = case.meshes.iter().map(|m| m.elements as f64).collect();
-    let errors = |label: &str, colour: usize, error: fn(&Mesh) -> f64| {
+    let errors = |label: &str, colour: usize, error: fn(&HertzMesh) -> f64| {
         let each = case.meshes.iter().map(|m| 100.0 * error(m).abs());
         let points = counts.iter().copied().zip(each).collect();
         Series::new(label, points, Colour::CYCLE[colour])
@@ -107,13 +107,13 @@ pub fn figure(case: &CaseReport) -> Figure {
             m.half_width.node / m.half_width.theory - 1.0
         })
         .marker(Marker::Circle, false, 4.0)
-        .line(Line::Dotted),
+        .line(LineStyle::Dotted),
         errors("peak, largest node", 4, |m| {
             m.peak.node / m.peak.theory - 1.0
         })
         .marker(Marker::Square, false, 4.0)
-        .line(Line::Dotted),
-        limit.line_only().line(Line::Dashed),
+        .line(LineStyle::Dotted),
+        limit.line_only().line(LineStyle::Dashed),
     ];
     let x = Axis::new("elements per radius", Scale::Log).at(counts);
     let y = Axis::new("error in %", Scale::Log);

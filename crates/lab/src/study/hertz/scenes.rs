@@ -1,6 +1,6 @@
 //! The three scenes, mesh by mesh, in the format of scene files.
 
-use super::theory::{Elastic, Pair};
+use super::theory::{Elastic, HertzPair};
 
 /// One of the three problems of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,16 +47,16 @@ impl HertzCase {
     }
 
     /// The parameters of Hertz's formulas.
-    pub fn pair(self) -> Pair {
+    pub fn pair(self) -> HertzPair {
         let body = |[young, poisson]: [f64; 2]| Elastic {
             young,
             poisson,
             radius: RADIUS,
         };
         match self {
-            HertzCase::Cylinder => Pair::new([body(LOWER), Elastic::PLANE], false),
-            HertzCase::TwoCylinders => Pair::new([body(LOWER), body(UPPER)], false),
-            HertzCase::Sphere => Pair::new([body(LOWER), Elastic::PLANE], true),
+            HertzCase::Cylinder => HertzPair::new([body(LOWER), Elastic::PLANE], false),
+            HertzCase::TwoCylinders => HertzPair::new([body(LOWER), body(UPPER)], false),
+            HertzCase::Sphere => HertzPair::new([body(LOWER), Elastic::PLANE], true),
         }
     }
 

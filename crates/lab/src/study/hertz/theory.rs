@@ -22,7 +22,7 @@ impl Elastic {
 
 /// The parameters of the formulas for a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct HertzPair {
     /// E*, with 1/E* the sum of (1 − ν²)/E.
     pub modulus: f64,
     /// R, with 1/R the sum of the curvatures.
@@ -33,19 +33,19 @@ pub struct Pair {
 
 /// The result of the formulas.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
+pub struct HertzContact {
     /// Half-width, or radius, of the contact zone.
     pub a: f64,
     /// Pressure in the middle of the zone.
     pub p0: f64,
 }
 
-impl Pair {
+impl HertzPair {
     /// The pair of two bodies.
-    pub fn new(bodies: [Elastic; 2], spheres: bool) -> Pair {
+    pub fn new(bodies: [Elastic; 2], spheres: bool) -> HertzPair {
         let compliance = |b: &Elastic| (1.0 - b.poisson * b.poisson) / b.young;
         let curvature = |b: &Elastic| 1.0 / b.radius;
-        Pair {
+        HertzPair {
             modulus: 1.0 / bodies.iter().map(compliance).sum::<f64>(),
             radius: 1.0 / bodies.iter().map(curvature).sum::<f64>(),
             spheres,
@@ -53,21 +53,21 @@ impl Pair {
     }
 
     /// The contact under the force F (per length for cylinders).
-    pub fn under(&self, force: f64) -> Contact {
+    pub fn under(&self, force: f64) -> HertzContact {
         use std::f64::consts::PI;
         let (e, r) = (self.modulus, self.radius);
         if self.spheres {
             let a = (3.0 * force * r / (4.0 * e)).cbrt();
             let p0 = 3.0 * force / (2.0 * PI * a * a);
-            return Contact { a, p0 };
+            return HertzContact { a, p0 };
         }
         let a = (4.0 * force * r / (PI * e)).sqrt();
         let p0 = 2.0 * force / (PI * a);
-        Contact { a, p0 }
+        HertzContact { a, p0 }
     }
 }
 
-impl Contact {
+impl HertzContact {
     /// The pressure at a distance from the middle.
     pub fn pressure(&self, x: f64) -> f64 {
         self.p0 * (1.0 - (x / self.a).powi(2)).max(0.0).sqrt()

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::network::Timing;
-use super::{IterationSeconds, Point, SetupSeconds, Work};
+use super::{IterationSeconds, ScalingPoint, SetupSeconds, Work};
 use crate::baselines::launch;
 use crate::study::scaling::network;
 use base::{Error, Result};
@@ -20,7 +20,7 @@ use scene::Scene;
 
 /// A measurement for a process group.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum Task {
+pub enum ScalingTask {
     /// Messages and all-reduces.
     Network,
     /// Set-up and solve of a scene.
@@ -47,9 +47,9 @@ pub struct NetworkRecord {
 /// [`ErrorKind::Input`](base::ErrorKind::Input) for a file that the study has not written; those of the method;
 /// [`ErrorKind::NotConverged`](base::ErrorKind::NotConverged).
 pub fn run_task(session: &Session, file: &Path) -> Result<()> {
-    let task: Task = launch::task(session, file, "a task that study scaling has written")?;
+    let task: ScalingTask = launch::task(session, file, "a task that study scaling has written")?;
     match &task {
-        Task::Network => {
+        ScalingTask::Network => {
             let (messages, reductions) = network::measure(session.comm());
             let record = NetworkRecord {
                 messages,
@@ -57,19 +57,19 @@ pub fn run_task(session: &Session, file: &Path) -> Result<()> {
             };
             launch::leave(session, file, &record)
         }
-        Task::Solve { scene, repeats } => {
+        ScalingTask::Solve { scene, repeats } => {
             let record = solve(session, scene, *repeats)?;
             launch::leave(session, file, &record)
         }
     }
 }
 
-fn solve(session: &Session, text: &str, repeats: usize) -> Result<Point> {
+fn solve(session: &Session, text: &str, repeats: usize) -> Result<ScalingPoint> {
     let before = memory(session) / 1e6;
     let scene = session.agree(Scene::parse("scaling.toml", text))?;
     let mine = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
-    let mut best: Option<Point> = None;
+    let mut best: Option<ScalingPoint> = None;
     for _ in 0..repeats.max(1) {
         let record = once(session, problem.clone())?;
         best = Some(match best {
@@ -82,10 +82,10 @@ fn solve(session: &Session, text: &str, repeats: usize) -> Result<Point> {
     Ok(record)
 }
 
-impl Point {
+impl ScalingPoint {
     /// The smaller seconds of two points, phase by phase.
-    fn faster(self, other: &Point) -> Point {
-        Point {
+    fn faster(self, other: &ScalingPoint) -> ScalingPoint {
+        ScalingPoint {
             setup: SetupSeconds::from_fn(|k| self.setup.all()[k].min(other.setup.all()[k])),
             iteration: IterationSeconds::from_fn(|k| {
                 self.iteration.all()[k].min(other.iteration.all()[k])
@@ -99,7 +99,7 @@ impl Point {
 
 /// One set-up and solve. The seconds of a phase are those of the slowest rank; those of messages are of the rank that
 /// waits least. Collective.
-fn once(session: &Session, problem: fetifeti::Problem) -> Result<Point> {
+fn once(session: &Session, problem: fetifeti::Problem) -> Result<ScalingPoint> {
     let comm = session.comm();
     let (subdomains, start) = (problem.n_subdomains, clock::spent());
     let (mut solver, setup_total) = timed(session, || {
@@ -140,7 +140,7 @@ fn once(session: &Session, problem: fetifeti::Problem) -> Result<Point> {
     min_all(comm, &mut least);
     let [local, primal, lifting, natural, iterating] = slowest;
     let facts = solver.facts();
-    Ok(Point {
+    Ok(ScalingPoint {
         subdomains,
         floating_bodies: facts.floating_bodies,
         multipliers: facts.multipliers_local + facts.multipliers_global,
@@ -160,7 +160,7 @@ fn once(session: &Session, problem: fetifeti::Problem) -> Result<Point> {
         total: [setup_total, solve_total],
         work: work(session, &solver),
         communication: solver.communication().unwrap_or_default(),
-        ..Point::default()
+        ..ScalingPoint::default()
     })
 }
 

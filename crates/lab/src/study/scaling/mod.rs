@@ -18,11 +18,11 @@ mod tables;
 
 pub use fit::Law;
 pub use measure::run_task;
-pub use model::{Model, Modelled};
-pub use network::{Measured, Network, Timing};
+pub use model::{CostModel, Modelled};
+pub use network::{MeasuredNetwork, Network, Timing};
 pub use picture::{figure, model_figure};
-pub use points::{Point, Problem, Series};
-pub use predict::{Limit, PredictedRow, Prediction, RANKS};
+pub use points::{ScalingPoint, ScalingProblem, ScalingSeries};
+pub use predict::{PhaseLimit, PredictedRow, Prediction, RANKS};
 pub use quantities::{IterationSeconds, SetupSeconds, Work};
 pub use tables::{points_csv, prediction_csv, text};
 
@@ -32,10 +32,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::baselines::launch::{Launcher, Workspace};
 use base::{Error, Result};
-use measure::{NetworkRecord, Task};
-use model::Sent;
+use measure::{NetworkRecord, ScalingTask};
+use model::SentData;
 use petsc::{Options, Session};
-use predict::Basis;
+use predict::PredictionBasis;
 use scenes::Setup;
 
 /// α and β of a usual network between the nodes of a cluster: 1.5 µs, and 100 Gbit/s.
@@ -51,11 +51,11 @@ pub struct ScalingReport {
     /// Cores of this machine.
     pub cores: usize,
     /// Messages on this machine.
-    pub network: Measured,
+    pub network: MeasuredNetwork,
     /// All runs.
-    pub points: Vec<Point>,
+    pub points: Vec<ScalingPoint>,
     /// The fitted costs.
-    pub model: Model,
+    pub model: CostModel,
     /// Subdomains of the predicted body, and elements of a subdomain, in each direction.
     pub body: [usize; 2],
     /// Iterations that the predictions assume: those of the run with the largest number of such bodies.
@@ -68,7 +68,7 @@ pub struct ScalingReport {
 
 /// The settings of the user.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct ScalingSettings {
     /// Whether to run the small scenes.
     pub quick: bool,
     /// α and β of the network of the predictions.
@@ -79,12 +79,16 @@ pub struct Settings {
     pub petsc: Vec<String>,
 }
 
-impl Settings {
+impl ScalingSettings {
     /// Reads `-scaling_alpha`, `-scaling_beta` and `-compare_time_limit`.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for numbers that are impossible for a network.
-    pub fn from_options(session: &Session, quick: bool, petsc: &[String]) -> Result<Settings> {
+    pub fn from_options(
+        session: &Session,
+        quick: bool,
+        petsc: &[String],
+    ) -> Result<ScalingSettings> {
         let options = Options::new(session, "scaling_");
         let mut network = USUAL;
         let help = [
@@ -110,7 +114,7 @@ impl Settings {
                 "option -compare_time_limit is {limit}, expected at least 1 second"
             )));
         }
-        Ok(Settings {
+        Ok(ScalingSettings {
             quick,
             network,
             limit: Duration::from_secs_f64(limit),
@@ -125,7 +129,7 @@ impl Settings {
 /// [`ErrorKind::Input`](base::ErrorKind::Input) on several ranks or for a case; those of the runs.
 pub fn run(
     session: &Session,
-    settings: &Settings,
+    settings: &ScalingSettings,
     case: Option<&str>,
     progress: &mut dyn FnMut(&str),
 ) -> Result<ScalingReport> {
@@ -156,13 +160,13 @@ pub fn run(
         progress(&format!("{} of {}, {}", k + 1, setups.len(), setup.name()));
         points.push(point(&launcher, setup, cores, settings.quick)?);
     }
-    let model = Model::fit(&points);
+    let model = CostModel::fit(&points);
     for p in &mut points {
         p.compare(&model, &network.network);
     }
     let body = scenes::predicted_body(settings.quick);
     let largest = largest_like(&points, body);
-    let basis = Basis {
+    let basis = PredictionBasis {
         model: &model,
         middle: middle(&points),
         iterations: largest.iterations,
@@ -192,15 +196,17 @@ pub fn run(
 }
 
 /// The run with a body per rank.
-fn middle(points: &[Point]) -> &Point {
-    let found = points.iter().find(|p| p.series == Series::Neighbours);
+fn middle(points: &[ScalingPoint]) -> &ScalingPoint {
+    let found = points
+        .iter()
+        .find(|p| p.series == ScalingSeries::Neighbours);
     found.expect("it is one of the runs")
 }
 
 /// The run with the largest number of bodies of this size.
-fn largest_like(points: &[Point], [s, e]: [usize; 2]) -> &Point {
-    let like = |p: &&Point| {
-        let tied = p.problem == Problem::Tied;
+fn largest_like(points: &[ScalingPoint], [s, e]: [usize; 2]) -> &ScalingPoint {
+    let like = |p: &&ScalingPoint| {
+        let tied = p.problem == ScalingProblem::Tied;
         tied && p.elements == e && p.subdomains == p.bodies * s * s
     };
     let found = points.iter().filter(like).max_by_key(|p| p.bodies);
@@ -210,7 +216,7 @@ fn largest_like(points: &[Point], [s, e]: [usize; 2]) -> &Point {
 fn started<T: serde::de::DeserializeOwned>(
     launcher: &Launcher,
     name: &str,
-    task: &Task,
+    task: &ScalingTask,
     ranks: usize,
 ) -> Result<T> {
     let finished = launcher.run("run", ("measure", task), ranks)?;
@@ -220,45 +226,45 @@ fn started<T: serde::de::DeserializeOwned>(
     })
 }
 
-fn messages(launcher: &Launcher) -> Result<Measured> {
+fn messages(launcher: &Launcher) -> Result<MeasuredNetwork> {
     let [two, four]: [NetworkRecord; 2] = [
-        started(launcher, "messages", &Task::Network, 2)?,
-        started(launcher, "messages", &Task::Network, 4)?,
+        started(launcher, "messages", &ScalingTask::Network, 2)?,
+        started(launcher, "messages", &ScalingTask::Network, 4)?,
     ];
     let reductions = [two.reductions, four.reductions].concat();
-    Ok(Measured::new(two.messages, reductions))
+    Ok(MeasuredNetwork::new(two.messages, reductions))
 }
 
-fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Result<Point> {
+fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Result<ScalingPoint> {
     // To count messages, one run is enough.
     let repeats = match setup.series {
-        Series::Neighbours => 1,
+        ScalingSeries::Neighbours => 1,
         _ if quick => 2,
         _ => 3,
     };
-    let task = Task::Solve {
+    let task = ScalingTask::Solve {
         scene: setup.scene(),
         repeats,
     };
-    let measured: Point = started(launcher, &setup.name(), &task, setup.ranks)?;
-    Ok(Point {
+    let measured: ScalingPoint = started(launcher, &setup.name(), &task, setup.ranks)?;
+    Ok(ScalingPoint {
         series: setup.series,
         problem: setup.problem,
         ranks: setup.ranks,
         oversubscribed: setup.ranks > cores,
         // Contact adds work in every step that the model does not have.
-        fitted: setup.ranks == 1 && setup.problem == Problem::Tied,
+        fitted: setup.ranks == 1 && setup.problem == ScalingProblem::Tied,
         bodies: setup.n_bodies(),
         elements: setup.elements,
         ..measured
     })
 }
 
-impl Point {
+impl ScalingPoint {
     /// Enters the model's seconds and their deviation from the measured ones.
-    fn compare(&mut self, model: &Model, network: &Network) {
+    fn compare(&mut self, model: &CostModel, network: &Network) {
         let ranks = self.ranks as f64;
-        self.model = model.seconds(&self.work, ranks, &Sent::of(self), network);
+        self.model = model.seconds(&self.work, ranks, &SentData::of(self), network);
         self.setup_deviation = self.model.setup.sum() / self.setup.sum() - 1.0;
         self.iteration_deviation = self.model.iteration.sum() / self.iteration.sum() - 1.0;
     }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit::Law;
 use super::network::Network;
-use super::{IterationSeconds, Point, SetupSeconds, Work};
+use super::{IterationSeconds, ScalingPoint, SetupSeconds, Work};
 use fetifeti::inside::FEW;
 
 /// Projections in an iteration: P and Pᵀ around F and around M⁻¹, each with an all-reduce of r numbers; or of many
@@ -29,12 +29,12 @@ fn projections(r: f64) -> f64 {
 const NEAR: f64 = 9.0;
 
 /// A phase: its terms as functions of a rank's work, and the measured seconds.
-struct Phase {
+struct CostPhase {
     /// The name; the phases of an iteration are [`ITERATED`].
     name: &'static str,
     terms: &'static [&'static str],
     values: fn(&Work) -> Vec<f64>,
-    seconds: fn(&Point) -> f64,
+    seconds: fn(&ScalingPoint) -> f64,
 }
 
 /// 1 if x is positive, else 0.
@@ -58,68 +58,68 @@ const ITERATED: std::ops::Range<usize> = 7..12;
 /// Number of cache sizes that are tried: powers of √2 times 128 kB.
 const CACHES: usize = 20;
 
-const PHASES: [Phase; 13] = [
-    Phase {
+const PHASES: [CostPhase; 13] = [
+    CostPhase {
         name: "set-up, subdomains",
         terms: &["subdomains", "unknowns", "interface^3"],
         values: |w| vec![w.subdomains, w.unknowns, w.interface_cubes],
         seconds: |p| p.setup.local,
     },
-    Phase {
+    CostPhase {
         name: "set-up, S_Π",
         terms: &["1", "primal", "primal log primal"],
         values: |w| vec![any(w.primal), w.primal, w.primal_factor],
         seconds: |p| p.setup.primal,
     },
-    Phase {
+    CostPhase {
         name: "set-up, Z_c",
         terms: &["interface^2 columns", "columns^2", "columns^3"],
         values: |w| vec![w.lifting_products, w.lifting_squares, w.lifting_cubes],
         seconds: |p| p.setup.lifting,
     },
-    Phase {
+    CostPhase {
         name: "set-up, GᵀQG",
         terms: &["multipliers", "1"],
         values: |w| vec![any(w.kernels) * w.multipliers, any(w.kernels)],
         seconds: |p| p.setup.natural,
     },
-    Phase {
+    CostPhase {
         name: "set-up, factor of GᵀQG",
         terms: &["r", "r^1.5"],
         values: |w| vec![w.kernels, w.kernels.powf(1.5)],
         seconds: |p| p.setup.factor,
     },
-    Phase {
+    CostPhase {
         name: "set-up, order of GᵀQG",
         terms: &["r", "r log r"],
         values: |w| vec![w.kernels, w.kernels * (w.kernels + 1.0).log2()],
         seconds: |p| p.setup.order,
     },
-    Phase {
+    CostPhase {
         name: "set-up, rest",
         terms: &["subdomains", "unknowns", "multipliers"],
         values: |w| vec![w.subdomains, w.unknowns, w.multipliers],
         seconds: |p| p.setup.rest,
     },
-    Phase {
+    CostPhase {
         name: "iteration, subdomains",
         terms: &["subdomains", "interface^2", "multipliers"],
         values: |w| vec![w.subdomains, w.interface_squares, w.multipliers],
         seconds: |p| p.iteration.local,
     },
-    Phase {
+    CostPhase {
         name: "iteration, S_Π",
         terms: &["1", "primal", "primal log primal"],
         values: |w| vec![any(w.primal), w.primal, w.primal_factor],
         seconds: |p| p.iteration.primal,
     },
-    Phase {
+    CostPhase {
         name: "iteration, Z_c",
         terms: &["columns", "columns^2"],
         values: |w| vec![w.lifting, w.lifting_squares],
         seconds: |p| p.iteration.lifting,
     },
-    Phase {
+    CostPhase {
         name: "iteration, GᵀQG",
         terms: &["1", "r", "r log r"],
         values: |w| {
@@ -128,13 +128,13 @@ const PHASES: [Phase; 13] = [
         },
         seconds: |p| p.iteration.natural,
     },
-    Phase {
+    CostPhase {
         name: "iteration, copies for messages",
         terms: &["1", "ghosts"],
         values: |w| vec![1.0, w.ghosts],
         seconds: |p| p.iteration.exchange,
     },
-    Phase {
+    CostPhase {
         name: "solve, outside the iterations",
         terms: &["subdomains", "unknowns", "interface^2"],
         values: |w| vec![w.subdomains, w.unknowns, w.interface_squares],
@@ -143,19 +143,19 @@ const PHASES: [Phase; 13] = [
 ];
 
 /// The data that a rank sends in an iteration.
-pub struct Sent {
+pub struct SentData {
     messages: f64,
     bytes: f64,
     /// All-reduces of one number: the inner products of CG.
     dots: f64,
 }
 
-impl Sent {
+impl SentData {
     /// The data that the rank with the largest amount sends in a run.
-    pub fn of(point: &Point) -> Sent {
+    pub fn of(point: &ScalingPoint) -> SentData {
         let counted = &point.communication;
         let projections = projections(point.work.kernels);
-        Sent {
+        SentData {
             messages: counted.messages.max,
             bytes: counted.bytes.max,
             dots: (counted.reductions - projections).max(0.0),
@@ -165,7 +165,7 @@ impl Sent {
 
 /// The fitted costs of all phases.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Model {
+pub struct CostModel {
     /// By phase.
     pub laws: Vec<Law>,
     /// Bytes of operators that a rank keeps in its cache.
@@ -188,7 +188,7 @@ const WAY: f64 = 0.2;
 
 /// How ranks share the factor of Gᵀ Q G of a plane grid of bodies (`cholesky::deal`).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shares {
+pub struct FactorShares {
     /// Messages, one after the other, from a subtree to the root; none if every rank has the whole factor.
     pub messages: f64,
     /// Number of rows between subtrees on the way to the root.
@@ -199,11 +199,11 @@ pub struct Shares {
     pub work: f64,
 }
 
-impl Shares {
+impl FactorShares {
     /// Of r rigid motions among `ranks` ranks: squares of bodies, one for each rank, and the lines between them.
-    pub fn new(r: f64, ranks: f64) -> Shares {
+    pub fn new(r: f64, ranks: f64) -> FactorShares {
         if r <= FEW as f64 || ranks <= 1.0 {
-            return Shares {
+            return FactorShares {
                 messages: 0.0,
                 way: 0.0,
                 rows: r,
@@ -212,7 +212,7 @@ impl Shares {
         }
         // A line through the square, two halves of one, two quarters …
         let way = (3.0 * (1.0 - ranks.sqrt().recip()) * r.sqrt()).min(r);
-        Shares {
+        FactorShares {
             messages: ranks.log2(),
             way,
             rows: way + (r - way) / ranks,
@@ -223,7 +223,7 @@ impl Shares {
 
 /// Bytes of Gᵀ G and its factor on a rank.
 pub fn replicated(r: f64, ranks: f64) -> f64 {
-    let rows = Shares::new(r, ranks).rows;
+    let rows = FactorShares::new(r, ranks).rows;
     KNOWN * r + ENTRIES * rows + FILL * rows * (r + 1.0).log2()
 }
 
@@ -268,9 +268,9 @@ impl Modelled {
     }
 }
 
-impl Model {
+impl CostModel {
     /// Fits all phases to the points on one rank.
-    pub fn fit(points: &[Point]) -> Model {
+    pub fn fit(points: &[ScalingPoint]) -> CostModel {
         let fit = |k: usize, cache: f64| {
             let phase = &PHASES[k];
             let one = points.iter().filter(|p| p.fitted);
@@ -288,18 +288,18 @@ impl Model {
         let misfit = |cache: &f64| ITERATED.map(|k| fit(k, *cache).misfit).sum::<f64>();
         let best = caches.min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
         let cache = best.expect("there are sizes to try");
-        Model {
+        CostModel {
             laws: (0..PHASES.len()).map(|k| fit(k, cache)).collect(),
             cache,
         }
     }
 
     /// The seconds of `work` on each of `ranks` ranks, with the messages of an iteration.
-    pub fn seconds(&self, work: &Work, ranks: f64, sent: &Sent, network: &Network) -> Modelled {
+    pub fn seconds(&self, work: &Work, ranks: f64, sent: &SentData, network: &Network) -> Modelled {
         let at = |k: usize| self.laws[k].at(&terms(k, self.cache, work));
         let r = work.kernels;
         let sum = |n: f64| any(n) * network.all_reduce(ranks, 8.0 * n);
-        let shares = Shares::new(r, ranks);
+        let shares = FactorShares::new(r, ranks);
         let shared = any(shares.messages);
         let mut setup = SetupSeconds::from_fn(at);
         // Of the factor what is done one after the other.

@@ -60,7 +60,7 @@ pub struct Timing {
 
 /// The measurements on this machine, and the network fitted to them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
+pub struct MeasuredNetwork {
     /// Messages one way between two ranks.
     pub messages: Vec<Timing>,
     /// All-reduces.
@@ -75,9 +75,9 @@ pub struct Measured {
     pub largest_deviation: f64,
 }
 
-impl Measured {
+impl MeasuredNetwork {
     /// Fits α, β and γ.
-    pub fn new(messages: Vec<Timing>, reductions: Vec<Timing>) -> Measured {
+    pub fn new(messages: Vec<Timing>, reductions: Vec<Timing>) -> MeasuredNetwork {
         let fit = |timings: &mut dyn Iterator<Item = &Timing>| {
             let samples: Vec<(Vec<f64>, f64)> = timings
                 .map(|t| (vec![1.0, t.bytes as f64], t.seconds))
@@ -92,7 +92,7 @@ impl Measured {
             gamma: (reduced.seconds[1] - law.seconds[1]).max(0.0),
         };
         let modelled = |t: &Timing| network.all_reduce(t.ranks as f64, t.bytes as f64);
-        Measured {
+        MeasuredNetwork {
             modelled_reductions: reductions.iter().map(modelled).collect(),
             messages,
             reductions,

@@ -1,9 +1,12 @@
 //! Figures of the study: runs over ranks and bodies, and the model by phase.
 
-use super::{IterationSeconds, Point, Problem, ScalingReport, Series as Runs, SetupSeconds};
+use super::{
+    IterationSeconds, ScalingPoint, ScalingProblem, ScalingReport, ScalingSeries as Runs,
+    SetupSeconds,
+};
 use report::drawing::canvas::Colour;
 use report::drawing::ticks::Scale;
-use report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use report::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 
 /// Ranks of the runs.
 const RANKS: [f64; 3] = [1.0, 2.0, 4.0];
@@ -15,10 +18,13 @@ fn colour(k: usize) -> Colour {
 /// Measured and modelled seconds of set-up and solve over ranks; hollow where there are more ranks than cores.
 fn over_ranks(report: &ScalingReport, runs: Runs, title: &str) -> Panel {
     let mut series = Vec::new();
-    for (k, problem) in [Problem::Tied, Problem::Contact].into_iter().enumerate() {
+    for (k, problem) in [ScalingProblem::Tied, ScalingProblem::Contact]
+        .into_iter()
+        .enumerate()
+    {
         let points = report.points.iter();
         let of = points.filter(|p| p.series == runs && p.problem == problem);
-        let of: Vec<&Point> = of.collect();
+        let of: Vec<&ScalingPoint> = of.collect();
         if of.is_empty() {
             continue;
         }
@@ -29,27 +35,27 @@ fn over_ranks(report: &ScalingReport, runs: Runs, title: &str) -> Panel {
                 .map(|p| (p.ranks as f64, p.total[0] + p.total[1]))
                 .collect::<Vec<_>>()
         };
-        let model = |p: &&Point| (p.ranks as f64, p.model.total(p.iterations as f64));
+        let model = |p: &&ScalingPoint| (p.ranks as f64, p.model.total(p.iterations as f64));
         let name = problem.name();
         // The model does not include the steps of the contact loop.
-        if problem == Problem::Tied {
+        if problem == ScalingProblem::Tied {
             let curve = of.iter().map(model).collect();
             series.push(
                 Series::new(format!("{name}, model"), curve, colour(k))
                     .line_only()
-                    .line(Line::Dashed),
+                    .line(LineStyle::Dashed),
             );
         }
         let label = format!("{name}, more ranks than cores");
         series.push(
             Series::new(label, at(true), colour(k))
                 .marker(marker, false, 4.5)
-                .line(Line::None),
+                .line(LineStyle::None),
         );
         series.push(
             Series::new(name, at(false), colour(k))
                 .marker(marker, true, 4.5)
-                .line(Line::Full),
+                .line(LineStyle::Full),
         );
     }
     let x = Axis::new("ranks", Scale::Log).at(RANKS);
@@ -119,10 +125,10 @@ fn phase_colour(name: &str) -> Colour {
 fn measured_phases(report: &ScalingReport) -> Panel {
     let of = report.points.iter();
     let of = of.filter(|p| p.series == Runs::Bodies && p.subdomains == 4 * p.bodies);
-    let of: Vec<&Point> = of.collect();
+    let of: Vec<&ScalingPoint> = of.collect();
     let mut series = Vec::new();
     for (k, name) in IterationSeconds::NAMES.iter().enumerate() {
-        let curve = |seconds: &dyn Fn(&Point) -> f64| {
+        let curve = |seconds: &dyn Fn(&ScalingPoint) -> f64| {
             let points = of.iter().map(|p| (p.bodies as f64, 1e3 * seconds(p)));
             points.filter(|p| p.1 > 0.0).collect::<Vec<_>>()
         };
@@ -133,7 +139,7 @@ fn measured_phases(report: &ScalingReport) -> Panel {
         let line = Series::new(label(name), modelled, phase_colour(name));
         series.push(line.line_only());
         let dots = Series::new("", curve(&|p| p.iteration.all()[k]), phase_colour(name));
-        series.push(dots.marker(Marker::Circle, true, 3.5).line(Line::None));
+        series.push(dots.marker(Marker::Circle, true, 3.5).line(LineStyle::None));
     }
     let x = Axis::new("bodies of 2 x 2 subdomains", Scale::Log);
     let y = Axis::new("milliseconds per iteration", Scale::Log);

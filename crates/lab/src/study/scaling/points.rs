@@ -9,7 +9,7 @@ use fetifeti::solution::Communication;
 /// The series that a run belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Series {
+pub enum ScalingSeries {
     /// An increasing number of bodies of one size, on one rank.
     #[default]
     Bodies,
@@ -23,15 +23,15 @@ pub enum Series {
     Neighbours,
 }
 
-impl Series {
+impl ScalingSeries {
     /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
-            Series::Bodies => "bodies",
-            Series::Elements => "elements",
-            Series::Strong => "strong",
-            Series::Weak => "weak",
-            Series::Neighbours => "neighbours",
+            ScalingSeries::Bodies => "bodies",
+            ScalingSeries::Elements => "elements",
+            ScalingSeries::Strong => "strong",
+            ScalingSeries::Weak => "weak",
+            ScalingSeries::Neighbours => "neighbours",
         }
     }
 }
@@ -39,7 +39,7 @@ impl Series {
 /// The problem of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Problem {
+pub enum ScalingProblem {
     /// Poisson's equation on tied bodies.
     #[default]
     Tied,
@@ -47,23 +47,23 @@ pub enum Problem {
     Contact,
 }
 
-impl Problem {
+impl ScalingProblem {
     /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
-            Problem::Tied => "tied",
-            Problem::Contact => "contact",
+            ScalingProblem::Tied => "tied",
+            ScalingProblem::Contact => "contact",
         }
     }
 }
 
 /// One run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct ScalingPoint {
     /// The series.
-    pub series: Series,
+    pub series: ScalingSeries,
     /// The problem.
-    pub problem: Problem,
+    pub problem: ScalingProblem,
     /// MPI ranks.
     pub ranks: usize,
     /// Whether there are more ranks than cores: then messages are right, seconds are not.

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::model::{replicated, Model, Modelled, Sent};
+use super::model::{replicated, CostModel, Modelled, SentData};
 use super::network::Network;
-use super::{IterationSeconds, Point, SetupSeconds};
+use super::{IterationSeconds, ScalingPoint, SetupSeconds};
 
 /// Numbers of ranks in the predictions.
 pub const RANKS: [usize; 10] = [
@@ -36,7 +36,7 @@ pub struct PredictedRow {
 
 /// The phase that takes longest, from some number of ranks on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct PhaseLimit {
     /// The number of ranks.
     pub from: usize,
     /// Its name.
@@ -53,9 +53,9 @@ pub struct Prediction {
     /// Predictions by number of ranks.
     pub rows: Vec<PredictedRow>,
     /// The phases that take longest in set-up and solve together.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<PhaseLimit>,
     /// The phases that take longest in an iteration.
-    pub iteration_limits: Vec<Limit>,
+    pub iteration_limits: Vec<PhaseLimit>,
     /// Number of ranks from which on the time is twice that of the first row; `None`: beyond the last row.
     pub doubles_at: Option<usize>,
     /// Number of ranks from which on GᵀG and its factor need more than 4 GB on every rank; `None`: beyond the last row.
@@ -63,11 +63,11 @@ pub struct Prediction {
 }
 
 /// The data that predictions are based on: the middle rank of 3 × 3, and the number of iterations.
-pub struct Basis<'a> {
+pub struct PredictionBasis<'a> {
     /// The fitted costs.
-    pub model: &'a Model,
+    pub model: &'a CostModel,
     /// A run with a body on every rank, of which one has all its neighbours.
-    pub middle: &'a Point,
+    pub middle: &'a ScalingPoint,
     /// Number of iterations in the run with the largest number of such bodies.
     pub iterations: usize,
 }
@@ -77,11 +77,11 @@ fn kernels(ranks: f64) -> f64 {
     (ranks.sqrt() - 2.0).max(0.0).powi(2)
 }
 
-impl Basis<'_> {
+impl PredictionBasis<'_> {
     fn row(&self, ranks: f64, network: &Network) -> PredictedRow {
         let mut work = self.middle.work;
         work.kernels = kernels(ranks).round();
-        let sent = &Sent::of(self.middle);
+        let sent = &SentData::of(self.middle);
         let seconds = self.model.seconds(&work, ranks, sent, network);
         let mut free = work;
         free.kernels = 0.0;
@@ -126,11 +126,11 @@ impl Basis<'_> {
         });
         let fine: Vec<PredictedRow> = fine.collect();
         let limits = |iteration: bool| {
-            let mut limits: Vec<Limit> = Vec::new();
+            let mut limits: Vec<PhaseLimit> = Vec::new();
             for row in &fine {
                 let phase = self.longest(row, iteration);
                 if limits.last().is_none_or(|l| l.phase != phase) {
-                    limits.push(Limit {
+                    limits.push(PhaseLimit {
                         from: row.ranks,
                         phase,
                     });

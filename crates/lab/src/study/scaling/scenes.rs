@@ -1,14 +1,14 @@
 //! The runs: scenes as text, and their numbers of ranks.
 
-use super::{Problem, Series};
+use super::{ScalingProblem, ScalingSeries};
 
 /// The set-up of one measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setup {
     /// The series it belongs to.
-    pub series: Series,
+    pub series: ScalingSeries,
     /// The problem.
-    pub problem: Problem,
+    pub problem: ScalingProblem,
     /// Number of bodies in x and y; two in contact.
     pub bodies: [usize; 2],
     /// Subdomains of a body in each direction.
@@ -33,7 +33,7 @@ pub fn setups(quick: bool) -> Vec<Setup> {
     let [s, e] = predicted_body(quick);
     let tied = |series, bodies, subdomains, elements, ranks| Setup {
         series,
-        problem: Problem::Tied,
+        problem: ScalingProblem::Tied,
         bodies,
         subdomains,
         elements,
@@ -51,24 +51,30 @@ pub fn setups(quick: bool) -> Vec<Setup> {
         ]
     };
     for &(subdomains, counts) in growing {
-        let one = |&n: &usize| tied(Series::Bodies, [n, n], subdomains, 8, 1);
+        let one = |&n: &usize| tied(ScalingSeries::Bodies, [n, n], subdomains, 8, 1);
         out.extend(counts.iter().map(one));
     }
     // Subdomains of other sizes, to measure the cost of a subdomain.
     let sizes: &[usize] = if quick { &[4, 16] } else { &[4, 16, 32, 64] };
-    let one = |&elements: &usize| tied(Series::Elements, [2, 2], 4, elements, 1);
+    let one = |&elements: &usize| tied(ScalingSeries::Elements, [2, 2], 4, elements, 1);
     out.extend(sizes.iter().map(one));
     let side = if quick { 3 } else { 6 };
-    out.push(tied(Series::Elements, [side, side], s, e, 1));
+    out.push(tied(ScalingSeries::Elements, [side, side], s, e, 1));
     for ranks in [1, 2, 4] {
         let (bodies, elements) = if quick { (2, 8) } else { (4, 32) };
-        out.push(tied(Series::Strong, [bodies, bodies], s, elements, ranks));
+        out.push(tied(
+            ScalingSeries::Strong,
+            [bodies, bodies],
+            s,
+            elements,
+            ranks,
+        ));
     }
     for ranks in [1, 2, 4] {
         let (subdomains, elements) = if quick { (2, 8) } else { (8, 32) };
         out.push(Setup {
-            series: Series::Strong,
-            problem: Problem::Contact,
+            series: ScalingSeries::Strong,
+            problem: ScalingProblem::Contact,
             bodies: [2, 1],
             subdomains,
             elements,
@@ -76,11 +82,11 @@ pub fn setups(quick: bool) -> Vec<Setup> {
         });
     }
     for (ranks, bodies) in [(1, [2, 2]), (2, [4, 2]), (4, [4, 4])] {
-        out.push(tied(Series::Weak, bodies, s, e, ranks));
+        out.push(tied(ScalingSeries::Weak, bodies, s, e, ranks));
     }
     // A body on every rank; the body in the middle has all eight neighbours.
     let sides: &[usize] = if quick { &[3] } else { &[3, 4, 5, 6] };
-    let one = |&n: &usize| tied(Series::Neighbours, [n, n], s, e, n * n);
+    let one = |&n: &usize| tied(ScalingSeries::Neighbours, [n, n], s, e, n * n);
     out.extend(sides.iter().map(one));
     out
 }
@@ -123,11 +129,11 @@ impl Setup {
             "subdomains = {subdomains}\nelements_per_subdomain = {elements}\nrho = \"{rho}\"\n"
         );
         match self.problem {
-            Problem::Tied => format!(
+            ScalingProblem::Tied => format!(
                 "[grid]\nbodies = [{nx}, {ny}]\nsize = [{nx}, {ny}]\n\
                  load = \"1 + x + y^2\"\ndirichlet = \"all\"\n{parts}"
             ),
-            Problem::Contact => format!(
+            ScalingProblem::Contact => format!(
                 "[[body]]\nname = \"left\"\norigin = [0, 0]\nsize = [1, 1]\ndirichlet = [\"left\"]\n\
                  load = [{{ y = [0.75, 1], value = -3 }}]\n{parts}\n\
                  [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\n\

@@ -1,8 +1,8 @@
 //! Tables of the study, and conclusions in words.
 
 use super::{
-    IterationSeconds, Law, Limit, Point, PredictedRow, Prediction, ScalingReport, SetupSeconds,
-    Timing, Work,
+    IterationSeconds, Law, PhaseLimit, PredictedRow, Prediction, ScalingPoint, ScalingReport,
+    SetupSeconds, Timing, Work,
 };
 use report::tables::table::{fixed, scientific, value, Columns, Table};
 
@@ -38,7 +38,7 @@ fn ranks(ranks: usize, crowded: bool) -> String {
 }
 
 /// The runs with their description, the first columns of two tables.
-fn described(report: &ScalingReport) -> Columns<&Point> {
+fn described(report: &ScalingReport) -> Columns<&ScalingPoint> {
     Table::of(&report.points)
         .words("series", |p| p.series.name())
         .words("problem", |p| p.problem.name())
@@ -157,8 +157,8 @@ fn prediction(p: &Prediction) -> Table {
 
 /// Sentences about the limits of scaling.
 fn limits(p: &Prediction) -> String {
-    let course = |limits: &[Limit]| {
-        let one = |(k, limit): (usize, &Limit)| match k {
+    let course = |limits: &[PhaseLimit]| {
+        let one = |(k, limit): (usize, &PhaseLimit)| match k {
             0 => limit.phase.clone(),
             _ => format!("from {} ranks on {}", limit.from, limit.phase),
         };

@@ -57,12 +57,12 @@ pub struct SpeedErrorReport {
     /// Cores that every method may use.
     pub cores: usize,
     /// The scenes.
-    pub cases: Vec<CaseReport>,
+    pub cases: Vec<SpeedErrorScene>,
 }
 
 /// One scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseReport {
+pub struct SpeedErrorScene {
     /// Its name.
     pub case: String,
     /// A description.
@@ -169,7 +169,7 @@ pub fn run(
                 }
             }
         }
-        cases.push(CaseReport {
+        cases.push(SpeedErrorScene {
             case: case.name().into(),
             title: case.title().into(),
             meshes: errors,
@@ -268,7 +268,7 @@ fn compare(
     read(&text)
 }
 
-impl CaseReport {
+impl SpeedErrorScene {
     /// The methods, ours first.
     pub fn methods(&self) -> Vec<String> {
         let mut out: Vec<String> = Vec::new();

@@ -1,9 +1,9 @@
 //! Work-precision plots: error over seconds, a curve per method.
 
-use super::{CaseReport, SpeedErrorReport, SpeedErrorRun};
+use super::{SpeedErrorReport, SpeedErrorRun, SpeedErrorScene};
 use report::drawing::canvas::Colour;
 use report::drawing::ticks::Scale;
-use report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use report::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 use report::tables::table::{count, scientific, Table};
 
 /// All runs.
@@ -51,7 +51,7 @@ fn front(runs: &[&SpeedErrorRun], seconds: fn(&SpeedErrorRun) -> f64) -> Vec<(f6
 }
 
 /// Error over seconds: set-up and solve, and the solve alone.
-pub fn figure(case: &CaseReport) -> Figure {
+pub fn figure(case: &SpeedErrorScene) -> Figure {
     let markers = [
         Marker::Circle,
         Marker::Square,
@@ -70,7 +70,7 @@ pub fn figure(case: &CaseReport) -> Figure {
             series.push(
                 Series::new("", all, colour)
                     .marker(marker, false, 3.0)
-                    .line(Line::None),
+                    .line(LineStyle::None),
             );
             series.push(
                 Series::new(method.clone(), front(&runs, seconds), colour)

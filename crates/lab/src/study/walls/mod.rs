@@ -3,7 +3,7 @@
 
 mod scenes;
 
-pub use scenes::{scene, Family, FAMILIES, JUMPS};
+pub use scenes::{scene, WallFamily, FAMILIES, JUMPS};
 
 use std::path::Path;
 
@@ -104,7 +104,7 @@ pub fn run(
 }
 
 /// The first `count` scenes of a family. Collective.
-fn walls(session: &Session, family: &Family, jump: f64, count: usize) -> Result<Walls> {
+fn walls(session: &Session, family: &WallFamily, jump: f64, count: usize) -> Result<Walls> {
     let mut out = Walls {
         family: family.name.into(),
         jump,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 /// A family of walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Family {
+pub struct WallFamily {
     /// Name in tables.
     pub name: &'static str,
     /// Bodies in each direction; two or three directions.
@@ -16,38 +16,38 @@ pub struct Family {
 }
 
 /// The families of the study.
-pub const FAMILIES: [Family; 6] = [
-    Family {
+pub const FAMILIES: [WallFamily; 6] = [
+    WallFamily {
         name: "scalar-4x4",
         bodies: &[4, 4],
         elastic: false,
         gaps: 0.5,
     },
-    Family {
+    WallFamily {
         name: "scalar-7x7",
         bodies: &[7, 7],
         elastic: false,
         gaps: 0.5,
     },
-    Family {
+    WallFamily {
         name: "scalar-7x7-open",
         bodies: &[7, 7],
         elastic: false,
         gaps: 0.8,
     },
-    Family {
+    WallFamily {
         name: "scalar-3x3x3",
         bodies: &[3, 3, 3],
         elastic: false,
         gaps: 0.5,
     },
-    Family {
+    WallFamily {
         name: "elastic-4x4",
         bodies: &[4, 4],
         elastic: true,
         gaps: 0.5,
     },
-    Family {
+    WallFamily {
         name: "elastic-3x3x3",
         bodies: &[3, 3, 3],
         elastic: true,
@@ -81,7 +81,7 @@ impl Random {
 }
 
 /// The scene of a seed.
-pub fn scene(family: &Family, jump: f64, seed: usize) -> String {
+pub fn scene(family: &WallFamily, jump: f64, seed: usize) -> String {
     // The same loads and gaps for every jump.
     let mut random = Random(seed as u64);
     let dim = family.bodies.len();

@@ -6,7 +6,7 @@ use scene::{Numbering, Scene};
 
 fn load(name: &str, quick: bool) -> Scene {
     let home = Workspace::new().expect("a directory");
-    let named = Named::find(name).expect("a name");
+    let named = NamedScene::find(name).expect("a name");
     let (file, _) = named.write(home.dir(), quick).expect("files");
     Scene::load(&file).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
@@ -26,8 +26,9 @@ fn cases_have_the_size_that_they_are_named_after() {
         27 * 375 - 9 * 75 - 4 * (6 * 25 + 3 * 20)
     );
     // Large meshes, a million random values and 4,096 bodies take seconds each.
-    let dear =
-        |c: &&Named| c.mesh.is_some() || c.name.ends_with("random") || c.name.ends_with("4096");
+    let dear = |c: &&NamedScene| {
+        c.mesh.is_some() || c.name.ends_with("random") || c.name.ends_with("4096")
+    };
     for quick in [false, true] {
         for case in CASES.iter().filter(|c| quick || !dear(c)) {
             let scene = load(case.name, quick);

@@ -11,7 +11,7 @@ fn pressure_and_force_belong_together() {
         radius: 1.5,
     };
     for spheres in [false, true] {
-        let pair = Pair::new([soft, Elastic::PLANE], spheres);
+        let pair = HertzPair::new([soft, Elastic::PLANE], spheres);
         assert!((pair.modulus - 2.0 / 0.91).abs() < 1e-14 && (pair.radius - 1.5).abs() < 1e-14);
         let found = pair.under(0.01);
         let n = 100_000;
@@ -44,8 +44,8 @@ fn two_equal_bodies_are_half_as_stiff_and_half_as_wide() {
         poisson: 0.25,
         radius: 1.0,
     };
-    let pair = Pair::new([body, body], false);
-    let plane = Pair::new([body, Elastic::PLANE], false);
+    let pair = HertzPair::new([body, body], false);
+    let plane = HertzPair::new([body, Elastic::PLANE], false);
     assert!((pair.modulus - 0.5 * plane.modulus).abs() < 1e-15);
     assert!((pair.radius - 0.5).abs() < 1e-15);
 }

@@ -1,6 +1,6 @@
 //! Unit tests of `crates/lab/src/study/scaling/model.rs`.
 
-use super::super::{Problem, Series};
+use super::super::{ScalingProblem, ScalingSeries};
 use super::*;
 use base::linalg::csr::Csr;
 use cholesky::deal::deal;
@@ -14,7 +14,7 @@ const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
 const CACHE: f64 = 131_072.0 * 16.0;
 
 /// A run of `n` bodies whose seconds follow these laws.
-fn point(n: f64, subdomains: f64) -> Point {
+fn point(n: f64, subdomains: f64) -> ScalingPoint {
     let work = Work {
         subdomains: n * subdomains,
         unknowns: 81.0 * n * subdomains,
@@ -27,9 +27,9 @@ fn point(n: f64, subdomains: f64) -> Point {
     };
     let local = terms(7, CACHE, &work);
     let local = local.iter().zip(KNOWN).map(|(x, c)| c * x).sum();
-    Point {
-        series: Series::Bodies,
-        problem: Problem::Tied,
+    ScalingPoint {
+        series: ScalingSeries::Bodies,
+        problem: ScalingProblem::Tied,
         ranks: 1,
         oversubscribed: false,
         fitted: true,
@@ -72,7 +72,7 @@ fn point(n: f64, subdomains: f64) -> Point {
     }
 }
 
-fn points() -> Vec<Point> {
+fn points() -> Vec<ScalingPoint> {
     let bodies = [2.0, 8.0, 32.0, 128.0, 512.0];
     let all = bodies
         .iter()
@@ -82,7 +82,7 @@ fn points() -> Vec<Point> {
 
 #[test]
 fn known_costs_and_the_size_of_the_cache_are_recovered() {
-    let model = Model::fit(&points());
+    let model = CostModel::fit(&points());
     assert!((model.cache / CACHE - 1.0).abs() < 1e-12, "{}", model.cache);
     for (found, known) in model.laws[7].seconds.iter().zip(KNOWN) {
         assert!(
@@ -98,13 +98,13 @@ fn known_costs_and_the_size_of_the_cache_are_recovered() {
 
 #[test]
 fn messages_come_on_top() {
-    let (model, one) = (Model::fit(&points()), point(8.0, 4.0));
+    let (model, one) = (CostModel::fit(&points()), point(8.0, 4.0));
     let net = Network {
         alpha: 1e-6,
         beta: 1e-9,
         gamma: 0.0,
     };
-    let at = |ranks: f64| model.seconds(&one.work, ranks, &Sent::of(&one), &net);
+    let at = |ranks: f64| model.seconds(&one.work, ranks, &SentData::of(&one), &net);
     let (alone, many) = (at(1.0), at(1024.0));
     assert!((many.iteration.exchange - (10e-6 + 1e-6)).abs() < 1e-12);
     // Three inner products of CG and four projections with r = 7, ten steps each.
@@ -138,7 +138,7 @@ fn shares_are_those_of_the_factor() {
     let symbolic = Symbolic::with_supernodes(&graph, &[], &sets);
     for ranks in [4, 100, 10_000] {
         let way = longest_way(&symbolic, ranks);
-        let modelled = Shares::new((n * n) as f64, ranks as f64);
+        let modelled = FactorShares::new((n * n) as f64, ranks as f64);
         let within = |found: f64, modelled: f64| (0.5..2.0).contains(&(found / modelled));
         assert!(
             within(way.rows, modelled.rows)

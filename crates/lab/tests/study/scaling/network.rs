@@ -22,7 +22,7 @@ fn alpha_and_beta_are_recovered() {
         LENGTHS.iter().map(timing).collect(),
         LENGTHS.iter().map(reduction).collect(),
     ];
-    let measured = Measured::new(messages, reductions);
+    let measured = MeasuredNetwork::new(messages, reductions);
     assert!((measured.network.gamma / known.gamma - 1.0).abs() < 1e-8);
     assert!((measured.network.alpha / known.alpha - 1.0).abs() < 1e-8);
     assert!((measured.network.beta / known.beta - 1.0).abs() < 1e-8);

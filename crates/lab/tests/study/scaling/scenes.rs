@@ -14,7 +14,10 @@ fn scenes_have_the_counts_that_they_are_named_after() {
             assert_eq!(scene.n_bodies(), setup.n_bodies(), "{}", setup.name());
             let subdomains = setup.n_bodies() * setup.subdomains.pow(2);
             assert_eq!(scene.n_subdomains(), subdomains, "{}", setup.name());
-            assert_eq!(scene.has_contact(), setup.problem == Problem::Contact);
+            assert_eq!(
+                scene.has_contact(),
+                setup.problem == ScalingProblem::Contact
+            );
         }
     }
 }

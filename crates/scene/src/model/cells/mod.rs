@@ -11,18 +11,18 @@ mod numbers;
 mod picture;
 
 use base::{Error, Result};
-use mesh::{Block, BoxMesh};
+use mesh::{BoxMesh, ElementBlock};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use numbers::Array;
+use numbers::ArrayFile;
 pub use numbers::NumberFormat;
 use picture::Picture;
 pub use picture::Tone;
 
 /// Values on a grid of cells. Copies share them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cells {
+pub struct CellGrid {
     data: Arc<Data>,
     /// Number of bodies in x, y and z that the cells cover.
     bodies: [usize; 3],
@@ -38,25 +38,25 @@ struct Data {
     counts: [usize; 3],
     /// Least and greatest value; NaN where one of them is.
     range: [f64; 2],
-    values: Values,
+    values: GridValues,
 }
 
 /// The values; the lowest row comes first, x runs fastest.
 #[derive(Debug, PartialEq)]
-enum Values {
+enum GridValues {
     Listed(Vec<f64>),
     Painted(Picture),
-    Stored(Array),
+    Stored(ArrayFile),
 }
 
-impl Cells {
+impl CellGrid {
     /// `counts[0]` × `counts[1]` (× `counts[2]`, 1 in the plane) cells with these values. x runs fastest; the lowest
     /// row and layer come first.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) when the number of values is another one.
-    pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<Cells> {
-        Cells::listed(name.into(), None, counts, values)
+    pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<CellGrid> {
+        CellGrid::listed(name.into(), None, counts, values)
     }
 
     fn listed(
@@ -64,7 +64,7 @@ impl Cells {
         file: Option<&Path>,
         counts: [usize; 3],
         values: Vec<f64>,
-    ) -> Result<Cells> {
+    ) -> Result<CellGrid> {
         if product(counts) != Some(values.len()) || values.is_empty() {
             let shape = shape(counts);
             let found = values.len();
@@ -73,24 +73,30 @@ impl Cells {
             )));
         }
         let range = range(values.iter().copied());
-        Ok(Cells::of(name, file, counts, range, Values::Listed(values)))
+        Ok(CellGrid::of(
+            name,
+            file,
+            counts,
+            range,
+            GridValues::Listed(values),
+        ))
     }
 
-    /// The numbers in the file `path`, in the order of [`Cells::new`]. With `format: None`, files `*.txt` and `*.csv`
-    /// are text; other files are f32 or f64, depending on their size.
+    /// The numbers in the file `path`, in the order of [`CellGrid::new`]. With `format: None`, files `*.txt` and
+    /// `*.csv` are text; other files are f32 or f64, depending on their size.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file cannot be read, or holds another number of numbers.
-    pub fn read(path: &Path, counts: [usize; 3], format: Option<NumberFormat>) -> Result<Cells> {
+    pub fn read(path: &Path, counts: [usize; 3], format: Option<NumberFormat>) -> Result<CellGrid> {
         let name = path.display().to_string();
         let format = format.or_else(|| numbers::format_of(path));
         if format == Some(NumberFormat::Text) {
-            return Cells::listed(name, Some(path), counts, numbers::text(path)?);
+            return CellGrid::listed(name, Some(path), counts, numbers::text(path)?);
         }
-        let array = Array::open(path, counts, format)?;
+        let array = ArrayFile::open(path, counts, format)?;
         let range = array.range()?;
-        let values = Values::Stored(array);
-        Ok(Cells::of(name, Some(path), counts, range, values))
+        let values = GridValues::Stored(array);
+        Ok(CellGrid::of(name, Some(path), counts, range, values))
     }
 
     /// The grey values of a PNG picture, its top row at the top of the body: `values[0]` where it is black, `values[1]`
@@ -99,12 +105,12 @@ impl Cells {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) when the file is no PNG picture, has colours or transparent pixels,
     /// or for values that the tone does not fit.
-    pub fn picture(path: &Path, values: [f64; 2], tone: Tone) -> Result<Cells> {
+    pub fn picture(path: &Path, values: [f64; 2], tone: Tone) -> Result<CellGrid> {
         let (picture, counts) = Picture::read(path, values, tone)?;
         let range = range(picture.values());
         let name = path.display().to_string();
-        let values = Values::Painted(picture);
-        Ok(Cells::of(name, Some(path), counts, range, values))
+        let values = GridValues::Painted(picture);
+        Ok(CellGrid::of(name, Some(path), counts, range, values))
     }
 
     fn of(
@@ -112,9 +118,9 @@ impl Cells {
         file: Option<&Path>,
         counts: [usize; 3],
         range: [f64; 2],
-        values: Values,
-    ) -> Cells {
-        Cells {
+        values: GridValues,
+    ) -> CellGrid {
+        CellGrid {
             data: Arc::new(Data {
                 name,
                 file: file.map(Path::to_path_buf),
@@ -152,8 +158,8 @@ impl Cells {
     }
 
     /// These cells, which cover a whole grid of bodies instead of one body.
-    pub(crate) fn over(&self, bodies: [usize; 3]) -> Cells {
-        Cells {
+    pub(crate) fn over(&self, bodies: [usize; 3]) -> CellGrid {
+        CellGrid {
             data: Arc::clone(&self.data),
             bodies,
         }
@@ -164,7 +170,7 @@ impl Cells {
         &self,
         place: [usize; 3],
         mesh: &BoxMesh,
-        block: &Block,
+        block: &ElementBlock,
     ) -> Result<Vec<f64>> {
         let Data { counts, name, .. } = &*self.data;
         if (0..3).any(|d| place[d] >= self.bodies[d]) {
@@ -211,7 +217,7 @@ impl Cells {
             };
             let (j, k) = (line % ny, line / ny);
             let cell = match &self.data.values {
-                Values::Painted(_) => format!("the pixel ({i}, {})", ny - 1 - j),
+                GridValues::Painted(_) => format!("the pixel ({i}, {})", ny - 1 - j),
                 _ if nz == 1 => format!("cell ({i}, {j})"),
                 _ => format!("cell ({i}, {j}, {k})"),
             };
@@ -229,30 +235,30 @@ fn cell(e: usize, elements: usize, cells: usize) -> usize {
 }
 
 impl Data {
-    fn reader(&self) -> Result<Reader<'_>> {
+    fn reader(&self) -> Result<GridReader<'_>> {
         Ok(match &self.values {
-            Values::Listed(values) => Reader::Listed(values),
-            Values::Painted(picture) => Reader::Painted(picture),
-            Values::Stored(array) => Reader::Stored(array.reader()?),
+            GridValues::Listed(values) => GridReader::Listed(values),
+            GridValues::Painted(picture) => GridReader::Painted(picture),
+            GridValues::Stored(array) => GridReader::Stored(array.reader()?),
         })
     }
 }
 
 /// Reads parts of rows.
-enum Reader<'a> {
+enum GridReader<'a> {
     Listed(&'a [f64]),
     Painted(&'a Picture),
-    Stored(numbers::Reader<'a>),
+    Stored(numbers::ArrayReader<'a>),
 }
 
-impl Reader<'_> {
+impl GridReader<'_> {
     /// Appends the `n` values from number `first` on to `out`.
     fn row(&mut self, first: usize, n: usize, out: &mut Vec<f64>) -> Result<()> {
         out.clear();
         match self {
-            Reader::Listed(values) => out.extend(&values[first..first + n]),
-            Reader::Painted(picture) => out.extend(picture.part(first..first + n)),
-            Reader::Stored(reader) => reader.read(first, n, |value| out.push(value))?,
+            GridReader::Listed(values) => out.extend(&values[first..first + n]),
+            GridReader::Painted(picture) => out.extend(picture.part(first..first + n)),
+            GridReader::Stored(reader) => reader.read(first, n, |value| out.push(value))?,
         }
         Ok(())
     }

@@ -71,7 +71,7 @@ pub fn text(path: &Path) -> Result<Vec<f64>> {
 
 /// An array in a file.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Array {
+pub(crate) struct ArrayFile {
     path: PathBuf,
     n: usize,
     double: bool,
@@ -80,9 +80,13 @@ pub(crate) struct Array {
 /// Bytes read at a time.
 const PIECE: usize = 1 << 16;
 
-impl Array {
+impl ArrayFile {
     /// Opens the file and checks its length.
-    pub fn open(path: &Path, counts: [usize; 3], format: Option<NumberFormat>) -> Result<Array> {
+    pub fn open(
+        path: &Path,
+        counts: [usize; 3],
+        format: Option<NumberFormat>,
+    ) -> Result<ArrayFile> {
         let (_, bytes) = open(path)?;
         let all = shape(counts);
         let file = path.display();
@@ -106,7 +110,7 @@ impl Array {
             }
         };
         match found {
-            Some(double) if bytes > 0 => Ok(Array {
+            Some(double) if bytes > 0 => Ok(ArrayFile {
                 path: path.to_path_buf(),
                 n: sizes[0] / 4,
                 double,
@@ -125,8 +129,8 @@ impl Array {
         Ok(range)
     }
 
-    pub fn reader(&self) -> Result<Reader<'_>> {
-        Ok(Reader {
+    pub fn reader(&self) -> Result<ArrayReader<'_>> {
+        Ok(ArrayReader {
             array: self,
             file: open(&self.path)?.0,
             bytes: Vec::new(),
@@ -135,13 +139,13 @@ impl Array {
 }
 
 /// An array being read.
-pub(crate) struct Reader<'a> {
-    array: &'a Array,
+pub(crate) struct ArrayReader<'a> {
+    array: &'a ArrayFile,
     file: File,
     bytes: Vec<u8>,
 }
 
-impl Reader<'_> {
+impl ArrayReader<'_> {
     /// Calls `each` with the `n` numbers from number `first` on.
     pub fn read(&mut self, first: usize, n: usize, mut each: impl FnMut(f64)) -> Result<()> {
         let width = if self.array.double { 8 } else { 4 };

@@ -1,7 +1,7 @@
 //! Two blocks, one on the other, of tetrahedra: the meshes match on the common face, or do not.
 
 use crate::delaunay::Solid;
-use crate::delaunay::{build, Groups};
+use crate::delaunay::{build, GroupNumbers};
 use crate::delaunay::{polyline, Planform};
 use elements::kind::CellKind;
 use mesh::MeshFile;
@@ -37,7 +37,7 @@ pub(in super::super) fn blocks(edges: [f64; 2]) -> MeshFile {
             cells.push(cell.into_iter().map(|n| first + n).collect());
         }
     }
-    let groups = Groups {
+    let groups = GroupNumbers {
         names: NAMES,
         of_cell,
     };

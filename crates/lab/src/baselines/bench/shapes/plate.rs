@@ -1,6 +1,6 @@
 //! A square plate with 25 round holes of different sizes.
 
-use crate::delaunay::{build, circle, polyline, Groups, Planform};
+use crate::delaunay::{build, circle, polyline, GroupNumbers, Planform};
 use elements::kind::CellKind;
 use mesh::MeshFile;
 
@@ -27,7 +27,7 @@ pub(in super::super) fn plate(across: usize) -> MeshFile {
         .iter()
         .map(|t| t.map(|n| n as u32).to_vec())
         .collect();
-    let groups = Groups {
+    let groups = GroupNumbers {
         names: &["plate", "left", "right", "bottom", "top", "holes"],
         of_cell: vec![1; cells.len()],
     };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::delaunay::{arc, build, circle, polyline, Groups, Planform, Solid};
+use crate::delaunay::{arc, build, circle, polyline, GroupNumbers, Planform, Solid};
 use elements::kind::CellKind;
 use mesh::MeshFile;
 
@@ -46,9 +46,13 @@ pub(in super::super) fn rod(edge: f64, quadratic: bool) -> MeshFile {
         solid = solid.quadratic();
         kind = CellKind::Tet10;
     }
-    let groups = Groups {
+    let groups = GroupNumbers {
         names: NAMES,
-        of_cell: solid.over.iter().map(|&t| part(plan.middle(t))).collect(),
+        of_cell: solid
+            .over
+            .iter()
+            .map(|&t| rod_part(plan.middle(t)))
+            .collect(),
     };
     let side = |[x, y, z]: [f64; 3], mut beside: [usize; 2]| {
         beside.sort_unstable();
@@ -67,7 +71,7 @@ pub(in super::super) fn rod(edge: f64, quadratic: bool) -> MeshFile {
 }
 
 /// The part that has a point of the plane.
-fn part([x, y]: [f64; 2]) -> usize {
+fn rod_part([x, y]: [f64; 2]) -> usize {
     match () {
         () if x.hypot(y) < BIG[0] => JOURNAL,
         () if (x - LENGTH).hypot(y) < SMALL[0] => PIN,

@@ -1,0 +1,84 @@
+//! The rows once more, by the multipliers of the certified solution.
+//!
+//! The loop ends by the residual, in displacements. Forces between stiff bodies follow from small differences of these
+//! and may still have the wrong sign when displacements have converged. The certificate then refines the solution with
+//! the rows that hold, and multipliers get their digits: some may turn out to pull.
+
+use super::judge::JudgeSizes;
+use super::state::State;
+use crate::feti::jump::blocks::Block;
+use crate::feti::jump::operator::Jump;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::Result;
+use parallel::exchange::{any, max_all};
+
+/// A row is on the wrong side if it pulls, or is violated, by more than this many tolerances, relative to the largest
+/// multiplier or displacement. The energy changes by the square of the pull.
+const WRONG: f64 = 10.0;
+
+/// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the
+/// tolerance.
+const ROUNDING: f64 = 1e-12;
+
+/// Factor by which the tolerance becomes smaller for the steps that follow.
+pub const FURTHER: f64 = 1e-2;
+
+/// How often the loop goes on. Rows that pull after that are no solution.
+pub const ROUNDS: usize = 3;
+
+/// The state from which the loop must go on; `None` if all rows are on the right side. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn wrong_signs(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<State>> {
+    let rtol = method.ksp.tolerances()?.0;
+    let dual = method.dual();
+    let jump = &dual.stiffness.jump;
+    let size = |list: &mut dyn Iterator<Item = &f64>| list.fold(0.0f64, |a, v| a.max(v.abs()));
+    let mut largest = [
+        size(&mut solution.lambda.iter()),
+        size(&mut solution.u.iter().flatten()),
+    ];
+    max_all(dual.comm(), &mut largest);
+    let JudgeSizes { load, give } = JudgeSizes::of(&dual, &method.problem);
+    let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
+    let (pull, open) = (pull.max(ROUNDING * load), open.max(ROUNDING * give));
+    let mut active = jump.active.clone();
+    for block in &jump.blocks {
+        leave(block, jump, &solution.lambda, pull, &mut active);
+    }
+    for r in jump.rows_between_bodies() {
+        if jump.inequality[r] && !solution.active[r] && solution.gaps[r] > open {
+            active[r] = true;
+        }
+    }
+    if !any(dual.comm(), active != jump.active) {
+        return Ok(None);
+    }
+    let on = |(l, on): (&f64, &bool)| if *on { *l } else { 0.0 };
+    let lambda = solution.lambda.iter().zip(&active).map(on).collect();
+    Ok(Some(State::warm(lambda, &active)))
+}
+
+/// Takes rows of `block` that pull by more than `pull` out of the set. Rows that depend on each other may carry their
+/// forces with multipliers of both signs: then others that are not negative do as well.
+fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bool]) {
+    let start = block.rows.start;
+    let held = active[block.rows.clone()].to_vec();
+    let pulls = |r: &usize| jump.inequality[start + r] && lambda[start + r] < -pull;
+    let on = |r: &usize| held[*r];
+    if !(0..held.len()).filter(on).any(|r| pulls(&r)) {
+        return;
+    }
+    let mut leaves: Vec<usize> = (0..held.len()).filter(on).filter(pulls).collect();
+    let (inequality, lambda) = (
+        &jump.inequality[block.rows.clone()],
+        &lambda[block.rows.clone()],
+    );
+    if let Some(others) = block.others(&held, inequality, lambda) {
+        if others.rest <= pull {
+            leaves.retain(|r| !others.rows.contains(r));
+        }
+    }
+    leaves.iter().for_each(|r| active[start + r] = false);
+}

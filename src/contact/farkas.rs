@@ -1,0 +1,169 @@
+//! Rigid motions of the floating bodies and the rows: whether the load pushes a body away for ever, and which rows must
+//! hold so that no body comes loose.
+//!
+//! Let v = R α be a motion that the rows allow: B_E v = 0, B_I v ≤ 0. A solution exists if and only if the load gains
+//! no energy on any such motion: eᵀα ≤ 0 for all of them. By Farkas' lemma this holds if and only if Gᵀ λ = e has a
+//! solution with λ_I ≥ 0.
+//!
+//! Few motions are asked about before the loop, by the exact method of Lawson and Hanson. With many the loop is the
+//! answer: λ_I ≥ 0 with Gᵀ λ = e is what it looks for, and where there is none, a motion α with eᵀα > 0 against which
+//! no row stands shows when rows are put back ([`coercivity`](super::coercivity)). Only a loop that fails asks
+//! (`unilateral_springs`), and one that cannot begin, as the load works on a motion that all rows leave free.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::contact::unilateral_springs;
+use crate::feti::jump::operator::Jump;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::balance::KernelLoad;
+use crate::feti::projector::gram::FEW;
+use crate::feti::projector::held::{moved, moving, weakness};
+use crate::feti::projector::kernel_motion::KernelMotion;
+use crate::feti::projector::rows::KernelRows;
+use crate::substructures::Problem;
+use crate::{Error, Result};
+use base::linalg::dense::Dense;
+use base::linalg::nnls::nnls;
+use base::linalg::sorted::distinct;
+use parallel::parcels::Parcels;
+
+/// The iteration accepts the load as balanced if the rest of e is below this, relative to the loads.
+pub const NEARLY: f64 = 1e-7;
+
+/// The part of e outside the cone may be rounding if it is below this, relative to the loads.
+pub const BALANCE: f64 = 1e-9;
+
+/// Asks before the loop, where few motions make the question cheap. With many the loop itself finds the answer:
+/// multipliers of the right sign in equilibrium with the load, or a motion that nothing stops (`coercivity`,
+/// [`check`]). Collective.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_few(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
+    if dual.natural.r <= FEW {
+        check(problem, dual, load, &[])
+    } else {
+        Ok(())
+    }
+}
+
+/// For a loop that has failed, or does not find the answer by itself: the same with many motions. `lambda` is where the
+/// loop has come. Collective.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_many(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
+    if dual.natural.r > FEW {
+        check(problem, dual, load, lambda)
+    } else {
+        Ok(())
+    }
+}
+
+/// Before a loop with all candidates as equations: returns an error if the load works on a motion that even these leave
+/// free. Where it pushes bodies away, the sentence says so, as it does of few motions. Collective.
+///
+/// # Errors
+/// As [`check`], and bodies that nothing holds.
+pub fn check_held(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
+    let held = dual.natural.check_held(problem, &dual.stiffness, load);
+    if held.is_err() {
+        check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
+    }
+    held
+}
+
+/// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
+/// begins at `lambda`. Collective.
+///
+/// # Errors
+/// Such bodies; PETSc's own errors.
+fn check(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
+    let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
+    if natural.r == 0 {
+        return Ok(());
+    }
+    let size = load.largest;
+    let (rest, tolerance) = if natural.r <= FEW {
+        let candidates: Vec<bool> = (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect();
+        let rows = natural.rows_without_noise(dual.comm(), &candidates);
+        let (columns, free) = directions(dual.comm(), jump, &rows, natural.r);
+        let rest = (0..).zip(nnls(&columns, &load.e, &free).1);
+        let rest = rest.filter(|&(c, v)| v.abs() > load.rounding[c as usize]);
+        (KernelMotion(rest.collect()), BALANCE)
+    } else {
+        let wanted = (&load.e[..], 0.1 * NEARLY * size);
+        let found = unilateral_springs::uncarried_load(dual.comm(), natural, jump, wanted, lambda);
+        match found {
+            Some(rest) => (rest, NEARLY),
+            // The certificate at the end of the loop handles the undecided cases.
+            None => return Ok(()),
+        }
+    };
+    pushed_away(problem, dual, &rest, tolerance * size)
+}
+
+/// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above
+/// `tolerance`.
+pub fn pushed_away(
+    problem: &Problem,
+    dual: &Dual,
+    rest: &KernelMotion,
+    tolerance: f64,
+) -> Result<()> {
+    let left = rest.largest();
+    if left <= tolerance {
+        return Ok(());
+    }
+    let who = moving(problem, &dual.natural.columns, rest);
+    let way = dual.natural.way(problem, &dual.stiffness, rest);
+    let weak = weakness(problem, &dual.natural.columns, rest);
+    Err(Error::input(format!(
+        "{who} pushed away for ever{way}: the load does not balance and no Dirichlet side, tie, \
+         contact or obstacle stands against it (resultant {left:.6e} in the direction of the motion), \
+         expected a support on that side{weak}"
+    ))
+    .at(problem.location(&moved(&dual.natural.columns, rest))))
+}
+
+/// The different directions among the rows of G, scaled to a largest entry of 1, as columns of length r; and for each
+/// of them whether it belongs to an equation. The same on every rank. Collective.
+fn directions(
+    comm: &SimpleCommunicator,
+    jump: &Jump,
+    g: &KernelRows,
+    r: usize,
+) -> (Dense, Vec<bool>) {
+    // Of each direction whether it is free, the number of its entries, and their columns and bits.
+    let mut mine: Vec<(u64, usize, Vec<[u64; 2]>)> = Vec::new();
+    for i in jump.rows_between_bodies() {
+        if !jump.is_candidate(i) {
+            continue;
+        }
+        let largest = g.row(i).fold(0.0f64, |a, (_, v)| a.max(v.abs()));
+        if largest == 0.0 {
+            continue;
+        }
+        let entries = g.row(i).filter(|e| e.1 != 0.0).map(|(c, v)| {
+            // Rounded, so that the rows of one flat face count once. 1e-13 is far below the differences that matter.
+            let rounded = (v / largest * 1e13).round() / 1e13;
+            [c as u64, (rounded + 0.0).to_bits()]
+        });
+        let entries: Vec<[u64; 2]> = entries.collect();
+        mine.push((u64::from(!jump.inequality[i]), entries.len(), entries));
+    }
+    let mut sent = Parcels::default();
+    for (free, _, entries) in distinct(mine) {
+        sent.push(free, entries);
+    }
+    let all = sent.gather_all(comm);
+    let all = all.iter().flat_map(Parcels::iter);
+    let all = distinct(all.map(|(free, entries)| (free, entries.len(), entries)));
+    let mut columns = Dense::zeros(r, all.len());
+    for (k, (_, _, entries)) in all.iter().enumerate() {
+        for &[c, v] in *entries {
+            columns.set(c as usize, k, f64::from_bits(v));
+        }
+    }
+    (columns, all.iter().map(|d| d.0 == 1).collect())
+}

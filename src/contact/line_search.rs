@@ -1,0 +1,199 @@
+//! The line search of a Newton step on the augmented Lagrangian, from φ along the step.
+//!
+//! ```text
+//!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,           s_j = μ_j + (B u − c)_j / C_j
+//! ```
+//!
+//! Displacements of the loop satisfy K u = f − Bᵀλ with some multipliers λ, between two of them both are interpolated,
+//! and along the segment
+//!
+//! ```text
+//!     φ'(t) = Σ_j (B du)_j ((s_j(t))₊ − λ_j(t))
+//! ```
+//!
+//! needs gaps and multipliers of the rows only. φ is convex, φ' piecewise linear.
+
+use mpi::topology::SimpleCommunicator;
+
+use super::anchors::Anchors;
+use parallel::exchange::sum_all;
+
+/// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
+/// not.
+const EVALUATIONS: usize = 60;
+
+/// A step is long enough if φ falls by this part of what the best length brings.
+const ENOUGH: f64 = 0.1;
+
+/// Displacements as the rows see them, one entry for each owned row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineSearchPoint {
+    /// B u − c.
+    pub gap: Vec<f64>,
+    /// λ with K u = f − Bᵀλ, less the forces of anchors.
+    pub force: Vec<f64>,
+    /// α and y = e − Gᵀλ where there are anchors ([`Anchors`]); else empty.
+    pub motion: [Vec<f64>; 2],
+}
+
+impl LineSearchPoint {
+    /// The point at `t` on the way to `end`.
+    pub fn towards(&self, end: &LineSearchPoint, t: f64) -> LineSearchPoint {
+        let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect()
+        };
+        LineSearchPoint {
+            gap: between(&self.gap, &end.gap),
+            force: between(&self.force, &end.force),
+            motion: [0, 1].map(|i| between(&self.motion[i], &end.motion[i])),
+        }
+    }
+}
+
+/// The penalty terms of φ, one entry for each owned row.
+pub struct Penalty<'a> {
+    /// Whether the row is an inequality; other rows do not count.
+    pub counts: &'a [bool],
+    /// μ.
+    pub multiplier: &'a [f64],
+    /// C.
+    pub compliance: &'a [f64],
+    /// The anchors of bodies, if there are any.
+    pub anchors: Option<&'a Anchors>,
+}
+
+impl Penalty<'_> {
+    /// s at a point; zero for rows that do not count.
+    pub fn pull(&self, at: &LineSearchPoint) -> Vec<f64> {
+        let of = |i: usize| {
+            if self.counts[i] {
+                self.multiplier[i] + at.gap[i] / self.compliance[i]
+            } else {
+                0.0
+            }
+        };
+        (0..at.gap.len()).map(of).collect()
+    }
+
+    /// φ'(t) and φ''(t) on the way from one point to another. Collective.
+    fn slope(
+        &self,
+        comm: &SimpleCommunicator,
+        from: &LineSearchPoint,
+        to: &LineSearchPoint,
+        t: f64,
+    ) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+            let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
+            let s = self.multiplier[i] + (from.gap[i] + t * gap) / self.compliance[i];
+            sums[0] += gap * (s.max(0.0) - (from.force[i] + t * force));
+            sums[1] += gap * (f64::from(u8::from(s > 0.0)) * gap / self.compliance[i] - force);
+        }
+        sum_all(comm, &mut sums);
+        let [a, b] = self.slope_of_anchors(comm, from, to, t);
+        [sums[0] + a, sums[1] + b]
+    }
+
+    fn slope_of_anchors(
+        &self,
+        comm: &SimpleCommunicator,
+        from: &LineSearchPoint,
+        to: &LineSearchPoint,
+        t: f64,
+    ) -> [f64; 2] {
+        let ends = [&from.motion, &to.motion];
+        let slope = |anchors: &Anchors| anchors.slope(comm, ends, t);
+        self.anchors.map_or([0.0; 2], slope)
+    }
+
+    /// φ at t on the way from one point to another, minus φ at its beginning. Collective.
+    pub fn change(
+        &self,
+        comm: &SimpleCommunicator,
+        [from, to]: [&LineSearchPoint; 2],
+        t: f64,
+    ) -> f64 {
+        let mut sum = [0.0];
+        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+            let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
+            let (mu, c) = (self.multiplier[i], self.compliance[i]);
+            let [was, is] = [0.0, t].map(|t| (mu + (from.gap[i] + t * gap) / c).max(0.0));
+            sum[0] += 0.5 * c * (is - was) * (is + was);
+            sum[0] -= t * gap * (from.force[i] + 0.5 * t * force);
+        }
+        sum_all(comm, &mut sum);
+        // It is a parabola along the way.
+        let [slope, curvature] = self.slope_of_anchors(comm, from, to, 0.0);
+        sum[0] + t * (slope + 0.5 * t * curvature)
+    }
+
+    /// How far to go from one point to another; `None` if φ does not fall. With `beyond` this is the t in (0, ∞) that
+    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`ENOUGH`] of what the minimum in (0, 1]
+    /// has: the minimum lies at a kink, where rows neither hold nor leave, and Newton steps from kink to kink are
+    /// short. Collective.
+    pub fn length(
+        &self,
+        comm: &SimpleCommunicator,
+        ends: [&LineSearchPoint; 2],
+        beyond: bool,
+    ) -> Option<f64> {
+        let least = self.minimum(comm, ends, beyond)?;
+        if beyond {
+            return Some(least);
+        }
+        let fall = self.change(comm, ends, least);
+        let mut t = 1.0;
+        while t > least && self.change(comm, ends, t) > ENOUGH * fall {
+            t *= 0.5;
+        }
+        Some(f64::max(t, least))
+    }
+
+    /// The t in (0, 1], or in (0, ∞), that minimises φ. Collective.
+    fn minimum(
+        &self,
+        comm: &SimpleCommunicator,
+        [from, to]: [&LineSearchPoint; 2],
+        beyond: bool,
+    ) -> Option<f64> {
+        // NaN is no descent either.
+        if self.slope(comm, from, to, 0.0)[0] < 0.0 {
+            // Go on below.
+        } else {
+            return None;
+        }
+        let (mut low, mut high, mut t) = (0.0, 1.0, 1.0);
+        for _ in 0..EVALUATIONS {
+            let [slope, curvature] = self.slope(comm, from, to, t);
+            if slope <= 0.0 {
+                if t == 1.0 && !beyond {
+                    return Some(1.0);
+                }
+                low = t;
+                if t == high {
+                    high *= 2.0;
+                    t = high;
+                    continue;
+                }
+            } else {
+                high = t;
+            }
+            let newton = t - slope / curvature;
+            let next = if low < newton && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - t).abs() <= 1e-12 * next {
+                break;
+            }
+            t = next;
+        }
+        Some(if t > 0.0 { t } else { high })
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/line_search.rs"]
+mod tests;

@@ -1,0 +1,397 @@
+//! Semismooth Newton steps on the augmented Lagrangian φ, with a line search.
+//!
+//! ```text
+//!     A = { s > 0 }        K u⁺ + Bᵀ λ⁺ = f,   B u⁺ − C λ⁺ = c − C μ on A        u ← u + t (u⁺ − u)
+//! ```
+//!
+//! u is never formed: the rows see it as gaps B u − c and as multipliers λ with K u = f − Bᵀλ, and both are
+//! interpolated along a step ([`LineSearchPoint`]).
+
+use std::time::Instant;
+
+use super::anchored::{Arrival, Begin};
+use super::anchors::Anchors;
+use super::coercivity::restore_coercivity;
+use super::compliant_rows::CompliantRows;
+use super::farkas;
+use super::judge;
+use super::least_distance::least_distance;
+use super::line_search::{LineSearchPoint, Penalty};
+use super::mean_compliance::mean_compliance;
+use super::ratio_test;
+use super::settings::ContactType;
+use super::state::{changes, State, Step};
+use crate::feti::krylov::iterate::{IterationControl, KrylovRun};
+use crate::feti::krylov::loads::Loads;
+use crate::feti::krylov::residual::Iterate;
+use crate::feti::krylov::target::target;
+use crate::feti::LinearMethod;
+use crate::status::Status;
+use crate::Result;
+use parallel::exchange::total;
+
+/// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes, in
+/// compact bodies. Much softer springs take more minimisations, much stiffer ones more steps in each.
+pub(super) const STIFFNESS: f64 = 30.0;
+
+/// Bodies are compact if they give way at the rows by no more than this many times what the nodes alone do. The springs
+/// of bodies that bend begin as many times softer as these are.
+const COMPACT: f64 = 7.0;
+
+/// Factor by which the springs become stiffer from one minimisation to the next.
+pub(super) const STIFFER: f64 = 3.0;
+
+/// Largest stiffness of the springs, relative as [`STIFFNESS`] is. Beyond it C is lost in the rounding of F.
+const STIFFEST: f64 = 1e9;
+
+/// The set hardly changes if this many rows change, or this part of all.
+const FEW: f64 = 8.0;
+const FEW_OF_ALL: f64 = 0.02;
+
+/// Reduction of the residual in a Newton step of the first minimisation. Springs turn jumps into forces, which are less
+/// exact than the jumps by the stiffness: with stiffer springs the residual falls further.
+pub(super) const REDUCTION: f64 = 1e-3;
+
+/// Factor on the reduction of the residual for another attempt, if the Newton step does not lead downwards.
+pub(super) const MORE: f64 = 1e-3;
+/// Largest number of attempts at a Newton step that leads downwards.
+const ATTEMPTS: usize = 3;
+
+/// Where a Newton step came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NewtonOutcome {
+    /// To the minimum of φ.
+    Down,
+    /// Close to it: few rows change.
+    Near,
+    /// Some way.
+    Somewhere,
+    /// φ does not fall along a step that is as exact as it can be made.
+    Nowhere,
+}
+
+/// The data of the search.
+pub struct SemismoothNewton<'a> {
+    pub(super) method: &'a LinearMethod,
+    pub(super) springs: CompliantRows<'a>,
+    pub(super) at: Iterate,
+    /// Whether each owned row is an inequality.
+    pub(super) counts: Vec<bool>,
+    /// The compliance of the nodes on the owned rows.
+    pub(super) nodes: Vec<f64>,
+    pub(super) stiffness: f64,
+    /// C and μ.
+    pub(super) compliance: Vec<f64>,
+    pub(super) multiplier: Vec<f64>,
+    /// Where the loop is; `None` before the first step.
+    pub(super) point: Option<LineSearchPoint>,
+    /// Springs on rigid motions, where bodies bend.
+    pub(super) anchors: Option<Anchors>,
+    /// The begin of the search, for a second one with anchors.
+    pub(super) begin: Option<Begin>,
+    /// The largest residual of a step with anchors.
+    pub(super) largest: f64,
+    /// Whether the next step is the first of a minimisation.
+    begins: bool,
+    /// The largest displacement in the last step.
+    pub length: f64,
+    n_rows: usize,
+    /// Number of rows that are few.
+    pub few: usize,
+    /// No tolerance is below this: rounding of the problem's scale.
+    least: f64,
+    pub(super) last: Option<KrylovRun>,
+}
+
+impl<'a> SemismoothNewton<'a> {
+    /// The search on the set of `state`, with μ = 0. Collective.
+    pub fn new(method: &'a LinearMethod, state: &mut State) -> Result<SemismoothNewton<'a>> {
+        let comm = method.session.comm();
+        let dual = method.dual();
+        let stiffness = &dual.stiffness;
+        let nodes = stiffness.compliance_of_rows(&method.problem)?;
+        let counts = stiffness.jump.inequality.clone();
+        let mine = counts.iter().filter(|c| **c).count();
+        let loads = Loads::new(&method.problem, &dual);
+        let mut at = Iterate::new(&dual, loads)?;
+        if state.reference == 0.0 {
+            farkas::check_few(&method.problem, &dual, &at.loads.kernel)?;
+            farkas::check_held(&method.problem, &dual, &at.loads.kernel)?;
+            at.begin(&dual)?;
+            state.reference = at.evaluate_projected(&dual)?;
+        }
+        at.lambda.array_mut()?.copy_from_slice(&state.lambda);
+        // Whole minimisations earlier, so that about the same softness gives the same springs.
+        let softer = mean_compliance(method, &nodes)? / COMPACT;
+        let first = STIFFNESS / STIFFER.powf(softer.max(1.0).log(STIFFER).round());
+        let mut search = SemismoothNewton {
+            at,
+            stiffness: first / STIFFER,
+            compliance: Vec::new(),
+            multiplier: vec![0.0; counts.len()],
+            counts,
+            nodes,
+            point: None,
+            anchors: None,
+            begin: (softer > 1.0).then(|| Begin::new(first, &state.active)),
+            largest: 0.0,
+            begins: true,
+            length: 0.0,
+            n_rows: stiffness.jump.n_global,
+            few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)) as usize,
+            last: None,
+            least: method.least_residual(),
+            springs: CompliantRows::of(method),
+            method,
+        };
+        drop(dual);
+        search.stiffen();
+        Ok(search)
+    }
+
+    pub(super) fn penalty(&self) -> Penalty<'_> {
+        Penalty {
+            counts: &self.counts,
+            multiplier: &self.multiplier,
+            compliance: &self.compliance,
+            anchors: self.anchors.as_ref(),
+        }
+    }
+
+    /// Makes the rows rigid again, for the active-set method.
+    pub fn rigid(&self) {
+        self.springs.rigid();
+    }
+
+    /// Makes the rows springs again, as stiff as before.
+    pub fn soften(&self) {
+        self.springs.soften(&self.compliance);
+    }
+
+    /// μ ← (s)₊, and the set of the rows with μ > 0. Anchors go along and become softer. Ends a minimisation.
+    pub fn update(&mut self, state: &mut State) {
+        let Some(point) = &self.point else {
+            return;
+        };
+        let s = self.penalty().pull(point);
+        if let Some(anchors) = &mut self.anchors {
+            anchors.follow(&point.motion[0]);
+            anchors.soften();
+        }
+        self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
+        ratio_test::ratio_test_descent(&self.method.dual().stiffness.jump, &mut self.multiplier);
+        state.active = self.set(&self.multiplier);
+    }
+
+    /// Makes the springs stiffer. The next minimisation goes on from where the loop is, with a step on the set of
+    /// `state`.
+    pub fn stiffen(&mut self) {
+        self.begins = true;
+        self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
+        let of = |(counts, node): (&bool, &f64)| match counts {
+            true => node / self.stiffness,
+            false => 0.0,
+        };
+        self.compliance = self.counts.iter().zip(&self.nodes).map(of).collect();
+        self.soften();
+    }
+
+    /// The rows that hold: inequalities with s > 0, and the equations.
+    fn set(&self, s: &[f64]) -> Vec<bool> {
+        let dual = self.method.dual();
+        let jump = &dual.stiffness.jump;
+        let on = |i: usize| (self.counts[i] && s[i] > 0.0) || (!self.counts[i] && jump.initial[i]);
+        (0..s.len()).map(on).collect()
+    }
+
+    /// Puts rows into the set so that the load drives no body away; returns their number. Collective.
+    fn hold(&self, active: &mut [bool]) -> Result<usize> {
+        let dual = self.method.dual();
+        let score = |i: usize| match &self.point {
+            Some(point) => point.gap[i],
+            None => -self.compliance[i],
+        };
+        let load = &self.at.loads.kernel;
+        restore_coercivity(&self.method.problem, &dual, active, &score, load)
+    }
+
+    /// The right-hand side of the rows: c − C μ. Rows that hold without a force of their own, s ≤ 0, are springs from
+    /// the present gap with `centred`.
+    fn jumps(&self, active: &[bool], centred: bool) -> Vec<f64> {
+        let dual = self.method.dual();
+        let c = &dual.stiffness.jump.gap;
+        let apart = |i: usize| {
+            let point = self.point.as_ref().filter(|_| centred && self.counts[i]);
+            let s = |p: &LineSearchPoint| self.multiplier[i] + p.gap[i] / self.compliance[i];
+            point.filter(|p| active[i] && s(p) <= 0.0).map(|p| p.gap[i])
+        };
+        let of = |i: usize| match apart(i) {
+            Some(gap) => c[i] + gap,
+            None => c[i] - self.compliance[i] * self.multiplier[i],
+        };
+        (0..c.len()).map(of).collect()
+    }
+
+    /// One Newton step on the set of `state`. Collective.
+    pub fn step(&mut self, state: &mut State) -> Result<(Step, Status, NewtonOutcome)> {
+        let clock = Instant::now();
+        let (method, comm) = (self.method, self.method.session.comm());
+        let mut active = state.active.clone();
+        let restored = match self.anchors {
+            // They hold all bodies.
+            Some(_) => 0,
+            None => self.hold(&mut active)?,
+        };
+        method.set_active(&active)?;
+        self.at.loads.jumps = Some(self.jumps(&active, false));
+        let dual = method.dual();
+        let jump = &dual.stiffness.jump;
+        let rows = jump.rows_between_bodies();
+        let mut lambda = self.at.lambda.array_mut()?;
+        for (l, on) in lambda.iter_mut().zip(&active) {
+            *l = if *on { *l } else { 0.0 };
+        }
+        drop(lambda);
+        drop(dual);
+        let begins = std::mem::take(&mut self.begins);
+        let arrival = match self.anchors.take() {
+            Some(anchors) => self.anchored(anchors, begins)?,
+            None => self.held(state, (&active, restored), begins)?,
+        };
+        let (run, end, t) = (arrival.run, arrival.end, arrival.length.unwrap_or(0.0));
+        let point = match &self.point {
+            Some(point) => point.towards(&end, t),
+            None => end,
+        };
+        let s = self.penalty().pull(&point);
+        self.point = Some(point);
+        let next = self.anchor().unwrap_or_else(|| self.set(&s));
+        let (was, now) = (&active, &next);
+        let [_, entering, leaving] = changes(comm, &was[rows.clone()], &now[rows.clone()]);
+        let [n_active, entered, left] = changes(comm, &state.before[rows.clone()], &active[rows]);
+        let wrong = entering + leaving;
+        state.steps += 1;
+        state.lambda = self.at.lambda.to_vec()?;
+        state.before = active;
+        state.active = next;
+        let step = Step {
+            method: ContactType::AugmentedLagrangian,
+            active: n_active,
+            entered,
+            left,
+            iterations: run.iterations,
+            estimate: run.estimate,
+            exact: if method.settings.spectrum {
+                method.spectrum()?
+            } else {
+                None
+            },
+            residual: arrival.residual,
+            tolerance: arrival.tolerance,
+            wrong,
+            seconds: clock.elapsed().as_secs_f64(),
+        };
+        let came = match t {
+            _ if self.point.is_none() => NewtonOutcome::Somewhere,
+            0.0 if begins => NewtonOutcome::Somewhere,
+            0.0 => NewtonOutcome::Nowhere,
+            1.0 if wrong == 0 => NewtonOutcome::Down,
+            t if t > 0.99 && wrong <= self.few => NewtonOutcome::Near,
+            _ => NewtonOutcome::Somewhere,
+        };
+        let status = run.status.clone();
+        self.last = Some(run);
+        Ok((step, status, came))
+    }
+
+    /// The end of a Newton step without anchors, as exact as it has to be to lead downwards. Collective.
+    fn held(
+        &mut self,
+        state: &State,
+        (active, restored): (&[bool], usize),
+        begins: bool,
+    ) -> Result<Arrival> {
+        let method = self.method;
+        let first = {
+            let dual = method.dual();
+            self.at.begin(&dual)?;
+            self.at.evaluate_projected(&dual)?
+        };
+        let mut run: Option<KrylovRun> = None;
+        let softer = (STIFFNESS / self.stiffness).min(1.0);
+        let mut reduction = REDUCTION * softer;
+        let mut length = None;
+        let mut tolerance = first;
+        let (mut end, mut centred) = (None, false);
+        for _ in 0..ATTEMPTS + usize::from(restored > 0) {
+            let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
+            let least = state.accuracy * least;
+            tolerance = (reduction * first).max(MORE * softer * least);
+            tolerance = tolerance.max(self.least);
+            let control = IterationControl::to(tolerance, self.at.residual.size);
+            let more = method.reach(&mut self.at, control, None)?;
+            run = Some(match run.take() {
+                Some(before) => before.followed_by(more),
+                None => more,
+            });
+            let here = self.evaluate_point()?;
+            length = self.length_to(&here, centred);
+            end = Some(here);
+            // The set of μ is a guess: from a point where φ falls not, the set of that point is next.
+            if length.is_some() || begins {
+                break;
+            }
+            // Rows that were put back may pull uphill. Springs from the present gaps cannot.
+            if restored > 0 && !centred {
+                centred = true;
+                self.at.loads.jumps = Some(self.jumps(active, true));
+                self.at.begin(&method.dual())?;
+            } else {
+                reduction *= MORE;
+            }
+            self.at.evaluate_projected(&method.dual())?;
+        }
+        let run = run.expect("there is an attempt");
+        let relative = |r: f64| match state.reference {
+            reference if reference > 0.0 => r / reference,
+            _ => r,
+        };
+        Ok(Arrival {
+            end: end.expect("it ended"),
+            length,
+            residual: relative(*run.residuals.last().unwrap_or(&first)),
+            tolerance: relative(tolerance),
+            run,
+        })
+    }
+
+    /// How far to go to a point from where the loop is; `None` if φ does not fall. Collective.
+    pub(super) fn length_to(&self, end: &LineSearchPoint, beyond: bool) -> Option<f64> {
+        match &self.point {
+            Some(point) => {
+                let comm = self.method.session.comm();
+                self.penalty().length(comm, [point, end], beyond)
+            }
+            None => Some(1.0),
+        }
+    }
+
+    /// The displacements of the present λ as the rows see them. Collective.
+    pub(super) fn evaluate_point(&mut self) -> Result<LineSearchPoint> {
+        let dual = self.method.dual();
+        let residual = &mut self.at.residual;
+        residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
+        residual.add_rigid_motion(&dual)?;
+        let mut gap = judge::all_gaps(&dual, residual)?;
+        if let Some(alpha) = least_distance(&dual, &gap) {
+            residual.shift(&dual, &alpha);
+            gap = judge::all_gaps(&dual, residual)?;
+        }
+        self.length = residual.length(&dual);
+        Ok(LineSearchPoint {
+            gap,
+            force: self.at.lambda.to_vec()?,
+            motion: Default::default(),
+        })
+    }
+}

@@ -1,0 +1,271 @@
+//! Additional primal constraints: enough that no subdomain can move rigidly against a neighbour in its body.
+//!
+//! Only motions without energy matter. If two subdomains share a face, its vertices and the averages over its edges
+//! must detect all of these motions. If they do not, the average over the face becomes a constraint. If that is still
+//! not enough, nodes of the face are added one by one; each is the node that moves most in the motions not yet
+//! detected, which spreads the nodes.
+
+use std::collections::BTreeSet;
+
+use super::bodies::Bodies;
+use super::classes::InterfaceClass;
+use super::kernels::{combinations, KernelVectors};
+use super::motions::NearKernels;
+use super::parts::TornSubdomain;
+use super::sharing::Sharers;
+use super::torn::Torn;
+use crate::feti::Primal;
+use crate::substructures::EntityKind;
+use parallel::exchange::exchange;
+use petsc::Session;
+
+/// Two subdomains that have dofs in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bond {
+    /// The lower one.
+    pub low: usize,
+    /// The other one.
+    pub high: usize,
+    /// Dofs in common.
+    pub shared: usize,
+    /// Whether equality at the common dofs excludes every rigid motion between the two.
+    pub holds: bool,
+}
+
+/// An average counts as a constraint if it detects at least this much of a motion (of order one) that the
+/// constraints before it do not detect.
+const SEEN: f64 = 0.1;
+
+/// A motion of the face is poorly detected if no constraint sees this fraction of its largest value. Then one more node
+/// is constrained.
+const WELL_SEEN: f64 = 0.5;
+
+/// Values below this count as zero.
+const LOOSE: f64 = 1e-6;
+
+/// With more motions than this, they are not taken for rigid body motions.
+const MANY: usize = 12;
+
+impl NearKernels {
+    /// The bonds whose lower subdomain is on this rank. Nothing holds a subdomain with a mechanism: it becomes a body
+    /// of its own.
+    pub fn bonds(&self, parts: &[TornSubdomain], sharers: &Sharers) -> Vec<Bond> {
+        let mut out = Vec::new();
+        for j in 0..parts.len() {
+            let low = sharers.first + j;
+            for (high, dofs) in &sharers.neighbours[j] {
+                if (*high as usize) < low {
+                    continue;
+                }
+                let mut span = Span::default();
+                for row in self.between(j, *high, dofs) {
+                    span.add(row, LOOSE);
+                }
+                let high = *high as usize;
+                let loose = self.is_loose(low) || self.is_loose(high);
+                out.push(Bond {
+                    low,
+                    high,
+                    shared: dofs.len(),
+                    holds: !loose && span.rank() >= self.needed(low, high),
+                });
+            }
+        }
+        out
+    }
+
+    /// The constraints needed besides vertices and the averages of `primal`: pairs of subdomains whose common faces are
+    /// averaged, those of which this rank has one, and dofs of every local subdomain. Collective.
+    pub fn missing(
+        &self,
+        session: &Session,
+        torn: &Torn,
+        parts: &[TornSubdomain],
+        sharers: &Sharers,
+        classes: &[Vec<InterfaceClass>],
+        shape: &ConstraintContext,
+    ) -> (BTreeSet<(u32, u32)>, Vec<BTreeSet<u32>>) {
+        let mut averaged = BTreeSet::new();
+        let mut nodes: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); parts.len()];
+        for (j, part) in parts.iter().enumerate() {
+            let low = sharers.first + j;
+            for (high, dofs) in &sharers.neighbours[j] {
+                let same = shape.bodies.of(low as u32) == shape.bodies.of(*high);
+                if (*high as usize) < low || !same {
+                    continue;
+                }
+                let motions = SharedMotions {
+                    dofs,
+                    rows: self.between(j, *high, dofs),
+                };
+                let mut all = Span::default();
+                for row in &motions.rows {
+                    all.add(row.clone(), LOOSE);
+                }
+                let mut span = Span::default();
+                let mut held: Vec<Vec<f64>> = Vec::new();
+                let common = classes[j].iter().filter(|c| c.sharers.contains(high));
+                for class in common.clone() {
+                    let kind = class.kind(shape.space);
+                    if (class.is_vertex() && shape.primal.vertices)
+                        || (!class.is_vertex() && shape.primal.takes(kind))
+                    {
+                        span.add(motions.mean(&class.dofs), SEEN);
+                        held.push(motions.mean(&class.dofs));
+                    }
+                }
+                let faces = common.filter(|c| c.kind(shape.space) == EntityKind::Face);
+                if span.rank() < all.rank() && shape.primal.edges && !shape.primal.faces {
+                    for face in faces {
+                        averaged.insert((low as u32, *high));
+                        span.add(motions.mean(&face.dofs), SEEN);
+                        held.push(motions.mean(&face.dofs));
+                    }
+                }
+                let extra = &mut nodes[j];
+                while span.rank() < all.rank() {
+                    let seen = |i: &u32| norm(&span.rest(motions.row(*i).to_vec()));
+                    let best = dofs.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)));
+                    let Some(best) = best.filter(|i| seen(i) > LOOSE) else {
+                        break;
+                    };
+                    for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, *best)) {
+                        span.add(motions.row(i).to_vec(), LOOSE);
+                        held.push(motions.row(i).to_vec());
+                        extra.insert(i);
+                    }
+                }
+                while let Some(best) = badly_seen(&motions, self.components, &held) {
+                    for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, best)) {
+                        held.push(motions.row(i).to_vec());
+                        extra.insert(i);
+                    }
+                }
+            }
+        }
+        let mut outgoing = vec![Vec::new(); session.size()];
+        for &(low, high) in &averaged {
+            outgoing[sharers.owners.of(high)].push([low, high]);
+        }
+        let received = exchange(session.comm(), outgoing);
+        averaged.extend(received.into_iter().map(|[low, high]| (low, high)));
+        (averaged, nodes)
+    }
+}
+
+/// The motions of two subdomains at the dofs that they share.
+struct SharedMotions<'a> {
+    /// Local dofs, increasing.
+    dofs: &'a [u32],
+    /// The values of all motions at each of them.
+    rows: KernelVectors,
+}
+
+impl SharedMotions<'_> {
+    /// The values of all motions at local dof `i`.
+    fn row(&self, i: u32) -> &[f64] {
+        let at = self.dofs.binary_search(&i);
+        &self.rows[at.expect("a shared dof")]
+    }
+
+    /// The means of all motions over some of the dofs.
+    fn mean(&self, dofs: &[u32]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.rows.first().map_or(0, Vec::len)];
+        for &i in dofs {
+            sum.iter_mut().zip(self.row(i)).for_each(|(s, x)| *s += x);
+        }
+        sum.iter().map(|s| s / dofs.len() as f64).collect()
+    }
+}
+
+/// Finds the motion that the constraints `held` detect worst. If they detect it poorly, returns the dof of `dofs`
+/// that moves most in it. Applies only if rotations are known.
+fn badly_seen(motions: &SharedMotions, components: usize, held: &[Vec<f64>]) -> Option<u32> {
+    let (dofs, k) = (motions.dofs, motions.rows.first().map_or(0, Vec::len));
+    if k <= components || k > MANY {
+        return None;
+    }
+    let mut gram = vec![0.0; k * k];
+    for row in &motions.rows {
+        for a in 0..k {
+            for b in 0..k {
+                gram[a + b * k] += row[a] * row[b];
+            }
+        }
+    }
+    // Motions of unit size on the face, and the value of a constraint for a motion.
+    let unit = combinations(&gram, k);
+    let seen = |row: &[f64], c: &[f64]| -> f64 { row.iter().zip(c).map(|(r, c)| r * c).sum() };
+    let n = unit.len();
+    let entry = |a: usize, b: usize| {
+        let terms = held.iter().map(|f| seen(f, &unit[a]) * seen(f, &unit[b]));
+        terms.sum::<f64>()
+    };
+    let eigen = faer::Mat::from_fn(n, n, entry)
+        .self_adjoint_eigen(faer::Side::Lower)
+        .ok()?;
+    let weights = (0..n).map(|a| eigen.U()[(a, 0)]);
+    let mut worst = vec![0.0; k];
+    for (weight, motion) in weights.zip(&unit) {
+        worst
+            .iter_mut()
+            .zip(motion)
+            .for_each(|(w, m)| *w += weight * m);
+    }
+    let moves = |i: &u32| seen(motions.row(*i), &worst).abs();
+    let best = *dofs.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)))?;
+    let most = held
+        .iter()
+        .map(|f| seen(f, &worst).abs())
+        .fold(0.0, f64::max);
+    (most < WELL_SEEN * moves(&best)).then_some(best)
+}
+
+/// Decisions that precede the choice of constraints.
+pub struct ConstraintContext {
+    pub bodies: Bodies,
+    /// Whether the problem is three-dimensional.
+    pub space: bool,
+    /// Constraints that the user wants.
+    pub primal: Primal,
+}
+
+/// An orthonormal basis of the detected motions.
+#[derive(Default)]
+struct Span(Vec<Vec<f64>>);
+
+impl Span {
+    fn rank(&self) -> usize {
+        self.0.len()
+    }
+
+    fn rest(&self, mut row: Vec<f64>) -> Vec<f64> {
+        for _ in 0..2 {
+            for q in &self.0 {
+                let part: f64 = row.iter().zip(q).map(|(x, q)| x * q).sum();
+                row.iter_mut().zip(q).for_each(|(x, q)| *x -= part * q);
+            }
+        }
+        row
+    }
+
+    fn add(&mut self, row: Vec<f64>, least: f64) {
+        if self.rank() == row.len() {
+            return;
+        }
+        let mut rest = self.rest(row);
+        let size = norm(&rest);
+        if size > least {
+            rest.iter_mut().for_each(|x| *x /= size);
+            self.0.push(rest);
+        }
+    }
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+fn same_node(torn: &Torn, part: &TornSubdomain, i: u32, j: u32) -> bool {
+    torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize])
+}
