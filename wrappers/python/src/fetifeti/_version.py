@@ -1,6 +1,6 @@
 """The versions that belong together."""
 
-VERSION = "0.1.0"
+VERSION = "0.2.0"
 """Of this package: that of the library (FETIFETI_VERSION_... in fetifeti.h)."""
 
 ABI = 0
