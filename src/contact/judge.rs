@@ -168,3 +168,7 @@ impl JudgedRows {
         scale(lambda, self.lambda_max) + scale(gap, self.y_max)
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/judge.rs"]
+mod tests;

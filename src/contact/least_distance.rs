@@ -173,3 +173,7 @@ fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<
     }
     z
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/least_distance.rs"]
+mod tests;

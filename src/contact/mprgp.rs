@@ -183,3 +183,7 @@ impl Setting<'_> {
         Ok(z.to_vec())
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/mprgp.rs"]
+mod tests;

@@ -24,6 +24,8 @@ fn noise_is_told_from_fields_and_channels() {
     assert_eq!(noisy("1 + 20*si + 3*sj + x"), [false; 4]);
     assert_eq!(noisy("2"), [false; 4]);
     assert_eq!(noisy("1 + 99*(mod(6*y, 1) < 0.5)"), [false; 4]);
+    // Waves of eight elements: steep, but between their neighbours.
+    assert_eq!(noisy("10^sin(37.7*x)"), [false; 4]);
 }
 
 #[test]
@@ -39,4 +41,6 @@ fn weights_of_noise_are_the_mean() {
     let mean = problem.local[0].rho.iter().sum::<f64>() / d.len() as f64;
     assert!(d.iter().all(|d| (d - mean).abs() < 1e-14 * mean));
     assert!((1.5..3.0).contains(&mean));
+    let root = &weights(&problem, Scaling::Rho, 0.5)[0];
+    assert!(root.iter().all(|d| (d - mean.sqrt()).abs() < 1e-14 * mean));
 }

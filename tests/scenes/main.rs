@@ -8,6 +8,7 @@ mod coefficient_mistakes;
 mod coefficient_scenes;
 mod contact;
 mod contact_input;
+mod contact_rows;
 mod contact_solution;
 mod copies;
 mod counts;

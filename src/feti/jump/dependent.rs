@@ -98,3 +98,7 @@ pub fn implied(b: &Dense, active: &[bool], c: &[f64]) -> Vec<usize> {
     }
     out
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/jump/dependent.rs"]
+mod tests;

@@ -41,3 +41,7 @@ pub fn distance<K: Copy>(
         distance
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/mortar/distance.rs"]
+mod tests;

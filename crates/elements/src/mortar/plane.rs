@@ -154,3 +154,7 @@ fn opposite(other: &MortarSide, piece: &Piece, x: [f64; 3], n: [f64; 3]) -> [f64
     }
     [s, 0.0, 0.0]
 }
+
+#[cfg(test)]
+#[path = "../../tests/mortar/plane.rs"]
+mod tests;

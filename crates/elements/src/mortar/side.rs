@@ -269,3 +269,7 @@ pub fn reversed(kind: CellKind, nodes: &[u32]) -> Vec<u32> {
     };
     order.iter().map(|&k| nodes[k]).collect()
 }
+
+#[cfg(test)]
+#[path = "../../tests/mortar/side.rs"]
+mod tests;

@@ -244,3 +244,23 @@ fn nodes_that_match_have_rows_of_two_terms() {
         );
     }
 }
+
+/// A factor that is the same everywhere multiplies areas and nothing else: nodes carry multipliers as without it, also
+/// those with little opposite.
+#[test]
+fn a_constant_factor_changes_areas_alone() {
+    for length in [0.6, 0.63, 0.7, 0.78] {
+        let [a, b] =
+            [(5, true, 1.0), (4, false, length)].map(|(n, up, l)| line(CellKind::Line2, n, up, l));
+        let list = samples(&a, &b, 0.1);
+        let plain = rows(&a, &b, &list, &|_| false, &|_| 1.0);
+        for factor in [0.125, 64.0] {
+            let found = rows(&a, &b, &list, &|_| false, &|_| factor);
+            assert_eq!(found.len(), plain.len(), "{length} {factor}");
+            for (row, old) in found.iter().zip(&plain) {
+                assert_eq!(row.node, old.node);
+                assert!((row.area / (factor * old.area) - 1.0).abs() < 1e-14);
+            }
+        }
+    }
+}

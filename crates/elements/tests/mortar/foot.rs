@@ -35,6 +35,8 @@ fn a_foot_is_the_nearest_point_with_the_values_there() {
     // Farther than asked for, from the other side too; at the limit it counts.
     assert!(feet.of([0.6, 0.2, -0.21], 0.2, &|_| true).is_none());
     assert!(feet.of([0.6, 0.2, -0.2], 0.2, &|_| true).is_some());
+    // Rounding of a coordinate is no way beyond it.
+    assert!(feet.of([0.6, 0.2, 0.1 + 0.2], 0.3, &|_| true).is_some());
     assert!(feet.of([0.6, 0.2, 0.1], 0.2, &|n| n[2] < 0.0).is_none());
 }
 
@@ -100,4 +102,23 @@ fn curved_faces_are_met_where_they_are() {
     let x = [s + way / length, s * s - way / length, 0.0];
     let foot = feet.of(x, 0.5, &|_| true).unwrap();
     assert!((foot.point[0] - s).abs() < 1e-9 && (foot.point[1] - s * s).abs() < 1e-9);
+}
+
+#[test]
+fn beyond_a_reference_cell_the_nearest_point_is_on_its_edge() {
+    let near = |kind, at: [f64; 2], expected: [f64; 2]| {
+        let found = inside(kind, [at[0], at[1], 0.0]);
+        let apart = minus(found, [expected[0], expected[1], 0.0]);
+        assert!(norm(apart) < 1e-15, "{at:?}: {found:?}");
+    };
+    let triangle = CellKind::Triangle3;
+    near(triangle, [0.25, 0.5], [0.25, 0.5]);
+    near(triangle, [0.25, -0.5], [0.25, 0.0]);
+    near(triangle, [-0.5, 0.25], [0.0, 0.25]);
+    // Across the long edge, and beyond its ends.
+    near(triangle, [1.0, 0.5], [0.75, 0.25]);
+    near(triangle, [0.5, 1.0], [0.25, 0.75]);
+    near(triangle, [3.0, 0.5], [1.0, 0.0]);
+    near(triangle, [0.5, 3.0], [0.0, 1.0]);
+    near(CellKind::Quad4, [1.5, -2.0], [1.0, -1.0]);
 }

@@ -104,3 +104,34 @@ fn blocks_that_are_alike_have_one_scaling() {
     }
     assert!(known.0.len() <= ScalingCache::MOST);
 }
+
+/// A jump of 1 between a copy of weight 3 and one of weight 1 moves them by 1/4 and 3/4, as a pair and as a row.
+#[test]
+fn heavy_copies_move_less() {
+    let weights = [3.0, 1.0];
+    let expected = [0.25, -0.75];
+    let of_row = block(&incidence(&[(0, 1)], 2), &weights, &[true]);
+    for (c, expected) in expected.into_iter().enumerate() {
+        assert_eq!(pair_entry(&weights, (0, 1), c), expected);
+        assert!((of_row.get(0, c) - expected).abs() < 1e-15);
+    }
+    // Coefficients b: D⁻¹ bᵀ / (b D⁻¹ bᵀ) with D = (4, 1).
+    let row = Dense::from_fn(1, 2, |_, j| [2.0, -1.0][j]);
+    let found = block(&row, &[4.0, 1.0], &[true]);
+    assert_eq!([found.get(0, 0), found.get(0, 1)], [0.25, -0.5]);
+}
+
+/// Small values of heavy copies have all their digits: those of pairs, which nothing cancels in.
+#[test]
+fn values_of_heavy_copies_keep_their_digits() {
+    let weights = [1e15, 1.0, 3.0];
+    let pairs = [(0, 1), (0, 2), (1, 2)];
+    let bd = block(&incidence(&pairs, 3), &weights, &[true; 3]);
+    for (r, &pair) in pairs.iter().enumerate() {
+        for c in 0..3 {
+            let expected = pair_entry(&weights, pair, c);
+            let apart = (bd.get(r, c) - expected).abs();
+            assert!(apart <= 1e-12 * expected.abs(), "{pair:?} {c}: {apart:e}");
+        }
+    }
+}
