@@ -10,4 +10,5 @@ mod hertz;
 mod kappa;
 mod scaling;
 mod speed_error;
+mod table1;
 mod walls;

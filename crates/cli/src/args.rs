@@ -7,6 +7,7 @@ use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 
 use lab::baselines::{Benchmark, Comparison, BASELINES};
+use lab::study::table1;
 use report::destination::Destination;
 use report::output;
 
@@ -184,7 +185,7 @@ pub struct PlanArguments {
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct Table1 {
     /// A row by 1/H_b, H_b/H_s and H_s/h, as in 2,4,2; may be repeated [default: the 20 rows of the paper]
-    #[arg(long, value_name = "N,N,N", value_parser = row)]
+    #[arg(long, value_name = "N,N,N", value_parser = table1::row)]
     pub rows: Vec<[usize; 3]>,
     #[command(flatten)]
     pub results: Results,
@@ -276,6 +277,8 @@ pub enum StudyName {
     Scaling,
     /// Error against seconds, ours and the baselines of compare, over meshes and tolerances
     SpeedError,
+    /// Lee's experiment: condition numbers and iterations beside his Table 1; a case is a row, as in 2,4,2
+    Table1,
     /// Steps and iterations of the contact loop on random walls of bodies; exit code 1 where one is not solved
     Walls,
 }
@@ -298,13 +301,4 @@ pub struct Study {
 fn rounds(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|&n| n > 0);
     number.ok_or_else(|| "expected a whole number from 1".into())
-}
-
-/// `1/H_b,H_b/H_s,H_s/h`, as in `2,4,2`.
-fn row(text: &str) -> Result<[usize; 3], String> {
-    let counts: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-    match counts.as_deref() {
-        Some(&[b, s, e]) if b >= 2 && s >= 1 && e >= 1 => Ok([b, s, e]),
-        _ => Err("expected three counts of at least 1 (2 for the first) as in 2,4,2".into()),
-    }
 }

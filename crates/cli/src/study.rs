@@ -7,10 +7,13 @@ use clap::ValueEnum;
 
 use super::args::{Study, StudyName};
 use super::first_rank::on_first_rank;
+use super::table1::ended;
 use base::{Error, Result};
 use fetifeti::settings::MethodSettings;
 use lab::baselines::launch::Workspace;
-use lab::study::{adaptive, benchmarks, hard_cases, hertz, kappa, scaling, speed_error, walls};
+use lab::study::{
+    adaptive, benchmarks, hard_cases, hertz, kappa, scaling, speed_error, table1, walls,
+};
 use petsc::Session;
 use report::destination::Destination;
 use report::output;
@@ -36,6 +39,7 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
         StudyName::Kappa => task.kappa(),
         StudyName::Scaling => task.scaling(petsc),
         StudyName::SpeedError => task.speed_error(),
+        StudyName::Table1 => task.table1(),
         StudyName::Walls => task.walls(),
     }
 }
@@ -193,6 +197,15 @@ impl StudyTask<'_> {
             }
             Ok(files)
         })
+    }
+
+    fn table1(&self) -> Result<()> {
+        let rows = table1::rows(self.quick, self.case())?;
+        let mut progress = self.progress();
+        let report = table1::run(self.session, &rows, "study table1", &mut progress)?;
+        let text = table1::table1(&report.rows).to_string();
+        self.finish(&report, &text, |dir| table1::save(&report.rows, dir))?;
+        ended(report.stopped)
     }
 
     fn walls(&self) -> Result<()> {

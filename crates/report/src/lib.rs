@@ -8,11 +8,11 @@
 //! |---|---|
 //! | `destination` | the destination of a command's results: terminal, JSON file, directory |
 //! | `output` | files that are written as a whole or not at all; standard output |
-//! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
+//! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::CompareRow`], [`json::BenchReport`] |
 //! | `interfaces` | the data along interfaces, and their CSV |
 //! | `drawing` | pixels, vectors, text, colours, ticks |
-//! | `tables` | aligned text for terminals, CSV, and the tables of the commands; Table 1 of Lee (2010) as printed |
-//! | `plots` | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
+//! | `tables` | aligned text for terminals, CSV, and the tables of the commands |
+//! | `plots` | line and scatter plots: contact along interfaces, energy and force over load steps |
 //! | `pictures` | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
 //! | `paraview` | VTU files, contact as point data, time series |
 //! | `pace` | how much of a long run is left |

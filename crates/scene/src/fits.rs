@@ -61,13 +61,13 @@ pub fn is_in_full(session: &Session) -> Result<bool> {
     Options::new(session, "fetifeti_").bool("full_integration", false, help)
 }
 
-/// The experiment of Table 1 of \[Lee\], unless it would not fit into the memory.
+/// The experiment of Table 1 of \[Lee\], unless it would not fit into the memory. Errors say `name` for the row, as the
+/// user has written it.
 ///
 /// # Errors
 /// Those of [`Scene::lee`], and as [`load`].
-pub fn lee(session: &Session, row: [usize; 3], faces: Faces) -> Result<Scene> {
+pub fn lee(session: &Session, name: &str, row: [usize; 3], faces: Faces) -> Result<Scene> {
     let [bodies, subdomains, elements] = row;
-    let name = format!("--rows {bodies},{subdomains},{elements}");
     if bodies.saturating_mul(bodies) > MOST_BODIES {
         return Err(Error::input(format!(
             "{name}: {bodies} × {bodies} bodies where at most {MOST_BODIES} were expected"
@@ -80,7 +80,7 @@ pub fn lee(session: &Session, row: [usize; 3], faces: Faces) -> Result<Scene> {
         )));
     }
     let spec = spec::lee(bodies, subdomains, elements, faces);
-    check(session, &name, &of_spec(&spec), Until::Solved, None)?;
+    check(session, name, &of_spec(&spec), Until::Solved, None)?;
     Scene::new(spec)
 }
 

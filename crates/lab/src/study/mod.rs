@@ -11,6 +11,7 @@ pub mod kappa;
 pub mod scaling;
 mod solved;
 pub mod speed_error;
+pub mod table1;
 pub mod walls;
 
 use base::{Error, Result};

@@ -12,7 +12,6 @@ mod plan;
 pub mod probes;
 mod solve;
 mod spectrum;
-mod table1;
 
 pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spread};
 pub use compare::{
@@ -25,7 +24,6 @@ pub use solve::{
     SolveReport,
 };
 pub use spectrum::{Condition, Spectrum};
-pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};
 
 use super::output;
 use base::{Error, Result};

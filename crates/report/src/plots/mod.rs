@@ -1,6 +1,5 @@
 //! Plots of numbers: axes, lines and markers in panels, and the figures that the program makes with them.
 
-pub mod figure3;
 pub mod load_steps;
 mod panel;
 pub mod plot;

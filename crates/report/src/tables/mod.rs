@@ -4,6 +4,5 @@ pub mod bench;
 pub mod compare;
 pub mod contact;
 mod methods;
-pub mod paper;
 pub mod summary;
 pub mod table;

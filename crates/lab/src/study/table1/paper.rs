@@ -1,7 +1,8 @@
 //! Table 1 of Lee (2010) as printed: condition numbers and iterations of the FETI-FETI method with M_D.
 
-use crate::json::PaperSide;
 use serde::Deserialize;
+
+use super::record::PaperSide;
 
 /// One row of the printed table.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -32,5 +33,5 @@ pub fn lookup(bodies: usize, subdomains: usize, elements: usize) -> Option<Paper
 }
 
 #[cfg(test)]
-#[path = "../../tests/tables/paper.rs"]
+#[path = "../../../tests/study/table1/paper.rs"]
 mod tests;

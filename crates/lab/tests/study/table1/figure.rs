@@ -1,7 +1,7 @@
-//! Unit tests of `crates/report/src/plots/figure3.rs`.
+//! Unit tests of `crates/lab/src/study/table1/figure.rs`.
 
+use super::super::tables::tests::sample_row;
 use super::*;
-use crate::tables::summary::tests::sample_row;
 
 #[test]
 fn every_row_of_the_paper_is_in_its_panel() {

@@ -1,4 +1,4 @@
-//! Unit tests of `crates/report/src/tables/paper.rs`.
+//! Unit tests of `crates/lab/src/study/table1/paper.rs`.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Unit tests of `crates/report/src/json/table1.rs`.
+//! Unit tests of `crates/lab/src/study/table1/record.rs`.
 
 use super::*;
 use serde_json::json;

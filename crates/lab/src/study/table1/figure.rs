@@ -1,12 +1,13 @@
 //! Figure 3 of Lee (2010) redrawn: condition numbers against 1/H_b, H_b/H_s and H_s/h, the paper's points and ours.
 
-use super::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
-use crate::drawing::canvas::Colour;
-use crate::drawing::ticks::Scale;
-use crate::json::Table1Row;
-use crate::tables::paper;
-use base::Result;
 use std::path::{Path, PathBuf};
+
+use super::paper;
+use super::record::Table1Row;
+use base::Result;
+use report::drawing::canvas::Colour;
+use report::drawing::ticks::Scale;
+use report::plots::plot::{Axis, Figure, LineStyle, Marker, Panel, Series};
 
 /// The size of a row that varies in a panel; the other two are 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,5 +140,5 @@ fn panel(family: VariedSize, rows: &[Table1Row]) -> Panel {
 }
 
 #[cfg(test)]
-#[path = "../../tests/plots/figure3.rs"]
+#[path = "../../../tests/study/table1/figure.rs"]
 mod tests;

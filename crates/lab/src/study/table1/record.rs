@@ -1,8 +1,8 @@
-//! The record of `table1`.
+//! The records of `table1` and `study table1`.
 
 use serde::{Deserialize, Serialize};
 
-/// One row of `table1`: an array of them is the command's JSON.
+/// One row of Table 1: an array of them is the JSON of `fetifeti table1`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Table1Row {
     /// 1/H_b, bodies along each side of the square.
@@ -17,7 +17,7 @@ pub struct Table1Row {
     pub middle_third: Table1Side,
 }
 
-/// One column of a row of `table1`.
+/// One column of a row of Table 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Table1Side {
     /// Rows of B, B_loc and B_gl together.
@@ -69,5 +69,5 @@ pub struct PaperSide {
 }
 
 #[cfg(test)]
-#[path = "../../tests/json/table1.rs"]
+#[path = "../../../tests/study/table1/record.rs"]
 mod tests;
