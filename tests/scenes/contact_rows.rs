@@ -146,7 +146,7 @@ fn equations_add_up_and_follow_given_values() {
         gap: Ramp::constant(1.0),
         dirichlet: Ramp::parse("0.25*t").expect("a factor"),
         update: false,
-        written: String::new(),
+        location: base::Location::default(),
     });
     // Node 3 of `a` is given, node 4 is in its middle.
     spec.equations.push(EquationSpec {
@@ -154,7 +154,7 @@ fn equations_add_up_and_follow_given_values() {
         value: 10.0,
         resolution: 0.0,
         support: false,
-        written: String::new(),
+        location: base::Location::default(),
     });
     let scene = Scene::new(spec).expect("a scene");
     let rows = scene.rows(&|_| true);

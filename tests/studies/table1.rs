@@ -4,7 +4,7 @@ use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use lab::study::table1::Table1Report;
 use mpi::Scratch;
-use program::{fetifeti, run_fetifeti};
+use program::fetifeti;
 use serde_json::Value;
 
 /// Required keys of the report.
@@ -48,7 +48,7 @@ fn the_rows_are_those_of_the_command() {
 
 #[test]
 fn a_row_is_a_case() {
-    let run = run_fetifeti(1, &["study", "table1", "2,2,4", "--json", "-"]);
+    let run = fetifeti(&["study", "table1", "2,2,4", "--json", "-"]);
     assert_eq!((run.code, run.stderr.as_str()), (0, ""), "{}", run.all());
     let report: Table1Report = keys::read(&run.stdout, KEYS);
     let sizes = report.rows.iter();
@@ -68,7 +68,7 @@ fn a_row_that_cannot_be_is_refused() {
             "study table1 100000,1,3: 100000 × 100000 bodies",
         ),
     ] {
-        let run = run_fetifeti(1, &["study", "table1", row]);
+        let run = fetifeti(&["study", "table1", row]);
         assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{}", run.all());
         assert!(run.stderr.contains(row) && run.stderr.contains(part));
         assert_eq!(run.stderr.trim_end().lines().count(), 1, "{}", run.all());
@@ -82,7 +82,7 @@ fn a_solve_that_stops_early_is_said_after_the_results() {
         &["table1", "--rows", "2,2,2"][..],
         &["study", "table1", "2,2,2"],
     ];
-    let [command, study] = commands.map(|args| run_fetifeti(1, &[args, &limit].concat()));
+    let [command, study] = commands.map(|args| fetifeti(&[args, &limit].concat()));
     assert_eq!((command.code, study.code), (1, 1), "{}", study.all());
     assert_eq!(command.stderr, study.stderr);
     assert_eq!(command.stdout, study.stdout);

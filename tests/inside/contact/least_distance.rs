@@ -4,7 +4,7 @@ use super::*;
 
 /// A row Σ a z ≤ b.
 fn row(a: &[(u64, f64)]) -> MotionConstraint {
-    a.iter().map(|&(m, x)| (m, x.to_bits())).collect()
+    a.iter().map(|&(m, x)| [m, x.to_bits()]).collect()
 }
 
 #[test]
