@@ -122,7 +122,7 @@ pub use base::{Error, Result};
 #[doc(inline)]
 pub use parallel::exchange::{max_all, sum_all};
 #[doc(inline)]
-pub use petsc::Session;
+pub use petsc::{Ksp, Session};
 pub use settings::Settings;
 pub use solution::Solution;
 pub use solver::FetiFeti;

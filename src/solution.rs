@@ -2,7 +2,7 @@
 
 pub use crate::contact::{ActiveSetProgress, Observer, State, Step};
 pub use crate::feti::deflation::Cost;
-pub use crate::feti::krylov::solve::Judge;
+pub use crate::feti::krylov::solve::{Judge, JudgeTiming};
 use crate::feti::LinearSolution;
 pub use crate::feti::{
     CertificationResult, Certified, Communication, FreeMotion, Kkt, PerIteration, SetUpSummary,
@@ -11,6 +11,8 @@ pub use crate::feti::{
 use crate::status::Status;
 pub use crate::substructures::{RowState, SolvedRow};
 use crate::Result;
+#[doc(inline)]
+pub use petsc::ConvergedReason;
 
 /// Estimates the discretisation error of displacements in the energy norm. Collective.
 pub type Discretisation<'a> = dyn FnMut(&[Vec<f64>]) -> Result<f64> + 'a;

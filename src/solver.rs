@@ -28,22 +28,39 @@ const CITATION: &str = "@techreport{Lee2010,
 
 /// The FETI-FETI solver of one problem: the linear method, and the contact loop around it.
 ///
-/// ```no_run
-/// use fetifeti::{FetiFeti, Result, Session, Settings};
-/// use fetifeti_scene::Scene;
+/// Two springs of stiffness 1 in a row, each a body. The first is fixed at its left end; a row ties its right end to
+/// the second spring. A force of 1 pushes the right end of that one against a wall at a distance of 0.1:
 ///
-/// fn solve(session: &Session) -> Result<()> {
-///     let scene = Scene::load("examples/scenes/model_contact.toml")?;
-///     let mine = fetifeti::share(session, scene.n_subdomains());
-///     let problem = scene.substructures(&|s| mine.contains(&s))?;
-///     let mut solver = FetiFeti::new(session, problem, Settings::default())?;
+/// ```
+/// use fetifeti::problem::Csr;
+/// use fetifeti::{FetiFeti, Problem, Row, Session, Settings, Subdomain};
+///
+/// fn main() -> fetifeti::Result<()> {
+///     let session = Session::new(&[], "")?;
+///     let fixed = Csr::from_triplets(1, &[(0, 0, 1.0)]);
+///     let free = Csr::from_triplets(2, &[(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)]);
+///     let problem = Problem::new(["fixed", "free"], 2)
+///         .with_subdomains([
+///             Subdomain::new(0, 0, fixed, vec![0.0], vec![0]),
+///             Subdomain::new(1, 1, free, vec![0.0, 1.0], vec![1, 2]),
+///         ])
+///         .with_rows([
+///             Row::equality([(0, 1.0), (1, -1.0)], 0.0),
+///             Row::inequality([(2, 1.0)], 0.1).in_block(1),
+///         ]);
+///     let mut solver = FetiFeti::new(&session, problem, Settings::default())?;
 ///     let solution = solver.solve()?;
-///     println!("{} after {} iterations", solution.status, solution.iterations);
-///     Ok(())
-/// }
+///     assert!(solution.converged());
+///     // Both springs share the way of 0.1, which takes a force of 0.05; the wall carries the rest.
+///     assert!((solution.u[0][0] - 0.05).abs() < 1e-12);
+///     assert!((solution.rows()[1].multiplier - 0.95).abs() < 1e-12);
 ///
-/// fn main() -> std::process::ExitCode {
-///     fetifeti::run(solve)
+///     // A wall farther away, on the same set-up: the force moves the end by 2.
+///     solver.set_loads(vec![vec![0.0], vec![0.0, 1.0]], &[0.0, 3.0]);
+///     let solution = solver.solve()?;
+///     assert!((solution.u[1][1] - 2.0).abs() < 1e-12);
+///     assert!(!solution.rows()[1].holds());
+///     Ok(())
 /// }
 /// ```
 pub struct FetiFeti {

@@ -388,10 +388,10 @@ impl MortarPair<'_> {
             if carry.contains(&k) {
                 continue;
             }
-            match node.iter().any(|&d| known.is_tied(d)) {
-                true => out.tied += 1,
-                false if node.iter().all(|&d| known.is_held(d)) => out.held += 1,
-                false => {}
+            if node.iter().any(|&d| known.is_tied(d)) {
+                out.tied += 1;
+            } else if node.iter().all(|&d| known.is_held(d)) {
+                out.held += 1;
             }
         }
         out

@@ -188,9 +188,12 @@ impl<'a> SemismoothNewton<'a> {
     pub fn stiffen(&mut self) {
         self.begins = true;
         self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
-        let of = |(counts, node): (&bool, &f64)| match counts {
-            true => node / self.stiffness,
-            false => 0.0,
+        let of = |(counts, node): (&bool, &f64)| {
+            if *counts {
+                node / self.stiffness
+            } else {
+                0.0
+            }
         };
         self.compliance = self.counts.iter().zip(&self.nodes).map(of).collect();
         self.soften();

@@ -41,10 +41,15 @@ fn keys_of_scenes() {
 
 #[test]
 fn bodies_of_scenes() {
-    let flat = refused("[[body]]\nname = \"a\"\nsize = [1, 0]\nelements = 4\n");
-    assert_eq!(flat.location().body(), Some("a"));
-    assert_eq!(flat.location().line_number(), Some(1));
-    assert!(flat.source().is_none());
+    let one = body("a", "[0, 0]", "elements = 4");
+    let twice = refused(&(one.clone() + &one));
+    assert_eq!(twice.location().bodies(), ["a"]);
+    let line = twice.location().line_number().expect("a line");
+    assert!((6..=8).contains(&line), "{twice}");
+    assert!(twice
+        .to_string()
+        .starts_with(&format!("s.toml:{line}: body `a`: ")));
+    assert!(twice.source().is_none());
 }
 
 #[test]

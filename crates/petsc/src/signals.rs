@@ -65,7 +65,7 @@ impl Drop for Heeded {
 /// An error on all ranks if one of them has got a signal; nothing unless signals are [`Heeded`]. Collective.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the name of the signal.
+/// [`ErrorKind::Ended`] with the name of the signal.
 pub fn heed(session: &Session) -> Result<()> {
     if !HEEDED.get() {
         return Ok(());

@@ -42,9 +42,10 @@ impl Blocks {
     /// The numbers of the dofs of block `k`, and its entries.
     fn get(&self, k: usize) -> (&[u32], &[f64]) {
         let (start, numbers) = self.numbers.get(k);
-        let end = match k + 1 < self.numbers.len() {
-            true => self.numbers.get(k + 1).0,
-            false => self.entries.len(),
+        let end = if k + 1 < self.numbers.len() {
+            self.numbers.get(k + 1).0
+        } else {
+            self.entries.len()
         };
         (numbers, &self.entries[start..end])
     }

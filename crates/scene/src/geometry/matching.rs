@@ -145,13 +145,13 @@ fn join(
             lonely = true;
         }
     }
-    match lonely {
-        true => Err(Mismatch::Lonely),
-        false if pairs.is_empty() => Err(Mismatch::Apart(apart(bodies, pair, sides))),
-        false => {
-            let shared = share(specs[0], sides[0], pairs);
-            Ok(interface(bodies, pair, sides, InterfaceShape::Face, shared))
-        }
+    if lonely {
+        Err(Mismatch::Lonely)
+    } else if pairs.is_empty() {
+        Err(Mismatch::Apart(apart(bodies, pair, sides)))
+    } else {
+        let shared = share(specs[0], sides[0], pairs);
+        Ok(interface(bodies, pair, sides, InterfaceShape::Face, shared))
     }
 }
 

@@ -56,14 +56,14 @@ impl SceneReader {
         }
         let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
         let side = section.need("side", "a side, a list of them or \"all\"")?;
-        let sides = match of_cells {
-            false if several => {
-                let sides = self.obstacle_sides(side)?;
-                let each = meant.iter().map(|b| (Some(b.name.clone()), sides.clone()));
-                each.collect()
-            }
-            false => vec![(body.clone(), self.obstacle_sides(side)?)],
-            true => self.obstacle_groups(side, &meant)?,
+        let sides = if of_cells {
+            self.obstacle_groups(side, &meant)?
+        } else if several {
+            let sides = self.obstacle_sides(side)?;
+            let each = meant.iter().map(|b| (Some(b.name.clone()), sides.clone()));
+            each.collect()
+        } else {
+            vec![(body.clone(), self.obstacle_sides(side)?)]
         };
         let extent = self.extent(&mut section, item, "[[obstacle]]")?;
         let mut bound = |key| section.read(key, |item| self.profile(item));
