@@ -11,7 +11,7 @@
 #include <petscksp.h>
 
 #define FETIFETI_VERSION_MAJOR    0
-#define FETIFETI_VERSION_MINOR    1
+#define FETIFETI_VERSION_MINOR    2
 #define FETIFETI_VERSION_SUBMINOR 0
 /* Whether the library is at least this version */
 #define FETIFETI_VERSION_GE(major, minor, subminor) \

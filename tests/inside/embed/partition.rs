@@ -51,37 +51,3 @@ fn groups_are_round() {
         assert_eq!(group[s] == group[t], block(s) == block(t), "{group:?}");
     }
 }
-
-/// From groups in stripes by number: sizes stay, and no further exchange of two subdomains of groups that touch each
-/// other leaves less in common.
-#[test]
-fn exchanges_keep_sizes_and_end_where_none_helps() {
-    for (w, h, parts) in [(4, 4, 2), (6, 4, 3), (5, 5, 4)] {
-        let (n, bonds) = (w * h, grid(w, h));
-        let cut = |group: &[u64]| -> usize {
-            let apart = bonds.iter().filter(|b| group[b.low] != group[b.high]);
-            apart.map(|b| b.shared).sum()
-        };
-        let sizes = |group: &[u64]| -> Vec<usize> {
-            let size = |g| group.iter().filter(|&&x| x == g as u64).count();
-            (0..parts).map(size).collect()
-        };
-        let before: Vec<u64> = (0..n).map(|s| (s % parts) as u64).collect();
-        let after = exchanged(&neighbours(n, &bonds), before.clone());
-        assert_eq!(sizes(&after), sizes(&before));
-        assert!(2 * cut(&after) < cut(&before), "{after:?}");
-        let touches = |s: usize, g: u64| {
-            let near = |b: &&Bond| {
-                (b.low == s && after[b.high] == g) || (b.high == s && after[b.low] == g)
-            };
-            bonds.iter().any(|b| near(&b))
-        };
-        for (s, t) in (0..n).flat_map(|s| (0..n).map(move |t| (s, t))) {
-            if touches(s, after[t]) && touches(t, after[s]) {
-                let mut other = after.clone();
-                other.swap(s, t);
-                assert!(cut(&other) >= cut(&after), "{s} and {t} of {after:?}");
-            }
-        }
-    }
-}
