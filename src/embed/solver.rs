@@ -190,16 +190,11 @@ impl Embedded {
             };
             subdomain(torn.n_global, part, &shape, known)
         });
-        let problem = Problem {
-            n_bodies,
-            n_subdomains: sharers.n_subdomains,
-            // Its ρ is the diagonal of K already.
-            ragged: false,
-            body_names: (0..n_bodies).map(|b| b.to_string()).collect(),
-            weak: Vec::new(),
-            local: local.collect(),
-            rows,
-        };
+        // It is not ragged: its ρ is the diagonal of K already.
+        let names = (0..n_bodies).map(|b| b.to_string());
+        let problem = Problem::new(names, sharers.n_subdomains)
+            .with_subdomains(local)
+            .with_rows(rows);
         // The solver has their loads.
         parts.iter_mut().for_each(|p| p.known = Vec::new());
         let solver = FetiFeti::new(session, problem, settings)?;

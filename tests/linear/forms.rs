@@ -204,11 +204,12 @@ fn sparse_solves_on_ranks() {
     assert_eq!(mixed["operators"]["single"], 16);
     let (a, b) = (number(&dense["energy"]), number(&mixed["energy"]));
     assert!((a - b).abs() < 1e-9 * a.abs(), "mixed: {a} {b}");
-    // Other local solvers are not there any more; the names of ours still are.
+    // Other local solvers and copies of the factor of GᵀQG are not there any more; the names of our solver still are.
     for (option, value, code) in [
         ("-fetifeti_local_solver", "faer", 2),
         ("-fetifeti_local_ordering", "scotch", 2),
         ("-fetifeti_local_ordering", "nd", 0),
+        ("-fetifeti_gtg_redundancy", "2", 2),
     ] {
         let out = run_fetifeti(1, &["solve", &scene, option, value]);
         assert_eq!(out.code, code, "{}", out.all());
