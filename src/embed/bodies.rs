@@ -1,8 +1,8 @@
 //! Bodies: groups of subdomains that are connected by primal constraints. The user names the groups, or a partition of
 //! the subdomain graph finds them ([`partition`](super::partition)).
 
+use super::bonds::Bond;
 use super::parts::TornSubdomain;
-use super::rigid_constraints::Bond;
 use super::sharing::Sharers;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;

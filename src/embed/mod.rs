@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. The other data of the method are
-//! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), bodies (`bodies`),
+//! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), pairs that hold each other (`bonds`), bodies (`bodies`),
 //! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
 //! and enough primal constraints that no subdomain floats in its body (`rigid_constraints`).
 //!
@@ -17,6 +17,7 @@
 //! rows or other gaps (`renewal`) no more is done than they ask for, and `work` counts it.
 
 pub(crate) mod bodies;
+pub(crate) mod bonds;
 pub(crate) mod classes;
 pub(crate) mod contact;
 pub(crate) mod frame;

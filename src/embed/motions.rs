@@ -126,13 +126,23 @@ impl NearKernels {
         self.around[&(subdomain as u32)].1
     }
 
+    /// Whether the bases are the kernels of the matrices.
+    pub fn are_kernels(&self) -> bool {
+        self.pairs.is_some()
+    }
+
+    /// Number of motions of a subdomain of this rank, or of a neighbour.
+    pub fn count(&self, subdomain: usize) -> usize {
+        self.around[&(subdomain as u32)].0
+    }
+
     /// How many motions the dofs that subdomains `low` and `high` share must see, so that neither moves without the
     /// other.
     pub fn needed(&self, low: usize, high: usize) -> usize {
-        let [a, b] = [low, high].map(|s| self.around[&(s as u32)].0);
+        let [a, b] = [low, high].map(|s| self.count(s));
         // A basis of known motions may be smaller where a part has few dofs. Kernels of matrices are smaller where
         // something holds the part; its neighbour has to be held all the same.
-        if self.pairs.is_some() {
+        if self.are_kernels() {
             a.max(b)
         } else {
             a.min(b)

@@ -3,7 +3,7 @@
 //! The graph is small (one vertex for each subdomain), and all ranks get it; where the host names bodies none does. The
 //! first rank partitions it: the groups do not depend on the distribution of subdomains over ranks.
 
-use super::rigid_constraints::Bond;
+use super::bonds::Bond;
 use crate::Result;
 use base::linalg::union_find::UnionFind;
 use parallel::exchange::{gather_all, sum_all};

@@ -19,19 +19,6 @@ use crate::substructures::EntityKind;
 use parallel::exchange::exchange;
 use petsc::Session;
 
-/// Two subdomains that have dofs in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Bond {
-    /// The lower one.
-    pub low: usize,
-    /// The other one.
-    pub high: usize,
-    /// Dofs in common.
-    pub shared: usize,
-    /// Whether equality at the common dofs excludes every rigid motion between the two.
-    pub holds: bool,
-}
-
 /// An average counts as a constraint if it detects at least this much of a motion (of order one) that the
 /// constraints before it do not detect.
 const SEEN: f64 = 0.1;
@@ -41,39 +28,12 @@ const SEEN: f64 = 0.1;
 const WELL_SEEN: f64 = 0.5;
 
 /// Values below this count as zero.
-const LOOSE: f64 = 1e-6;
+pub(super) const LOOSE: f64 = 1e-6;
 
 /// With more motions than this, they are not taken for rigid body motions.
 const MANY: usize = 12;
 
 impl NearKernels {
-    /// The bonds whose lower subdomain is on this rank. Nothing holds a subdomain with a mechanism: it becomes a body
-    /// of its own.
-    pub fn bonds(&self, parts: &[TornSubdomain], sharers: &Sharers) -> Vec<Bond> {
-        let mut out = Vec::new();
-        for j in 0..parts.len() {
-            let low = sharers.first + j;
-            for (high, dofs) in &sharers.neighbours[j] {
-                if (*high as usize) < low {
-                    continue;
-                }
-                let mut span = Span::default();
-                for row in self.between(j, *high, dofs) {
-                    span.add(row, LOOSE);
-                }
-                let high = *high as usize;
-                let loose = self.is_loose(low) || self.is_loose(high);
-                out.push(Bond {
-                    low,
-                    high,
-                    shared: dofs.len(),
-                    holds: !loose && span.rank() >= self.needed(low, high),
-                });
-            }
-        }
-        out
-    }
-
     /// The constraints needed besides vertices and the averages of `primal`: pairs of subdomains whose common faces are
     /// averaged, those of which this rank has one, and dofs of every local subdomain. Collective.
     pub fn missing(
@@ -232,10 +192,10 @@ pub struct ConstraintContext {
 
 /// An orthonormal basis of the detected motions.
 #[derive(Default)]
-struct Span(Vec<Vec<f64>>);
+pub(super) struct Span(Vec<Vec<f64>>);
 
 impl Span {
-    fn rank(&self) -> usize {
+    pub fn rank(&self) -> usize {
         self.0.len()
     }
 
@@ -249,7 +209,7 @@ impl Span {
         row
     }
 
-    fn add(&mut self, row: Vec<f64>, least: f64) {
+    pub fn add(&mut self, row: Vec<f64>, least: f64) {
         if self.rank() == row.len() {
             return;
         }

@@ -117,11 +117,12 @@ impl Embedded {
         let modes = torn.modes.as_deref();
         let modes = kernels::modes(modes, &halo, &ghosts, &parts)?;
         let (motions, mut modes) = NearKernels::new(session, torn, &parts, &sharers, modes)?;
-        let bonds = motions.bonds(&parts, &sharers);
+        let named = named_groups(session, sharers.first, &parts)?;
+        let bonds = motions.bonds(session, &parts, &sharers, named.as_deref());
         let n = sharers.n_subdomains;
         let given = torn.pieces.iter().filter(|p| p.is_coupled()).count();
         let given = total(session.comm(), given as f64) as usize;
-        let group = match named_groups(session, sharers.first, &parts)? {
+        let group = match named {
             Some(group) => group,
             None => {
                 let wanted = bodies::number(wanted, given, n);

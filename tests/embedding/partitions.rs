@@ -80,6 +80,18 @@ fn random_partitions() {
     }
 }
 
+/// A subdomain of one node lies between two others that meet there only. It holds neither of them to the other.
+#[test]
+fn a_node_is_no_hinge_of_a_body() {
+    let scratch = Scratch::new("embed-pin");
+    let program = program(&scratch);
+    for (ranks, bodies) in [(1, 1), (3, 2), (2, 6)] {
+        let options =
+            format!("-first 206 -count 1 -fetifeti_ksp_rtol 1e-11 -fetifeti_bodies {bodies}");
+        good(&program.run(ranks, &options), &options);
+    }
+}
+
 /// `cargo test --test embedding a_thousand -- --ignored --nocapture`, some 40 seconds: docs/embedding.md has the table.
 #[test]
 #[ignore = "random_partitions has a sample"]
