@@ -8,6 +8,7 @@ use crate::Result;
 use base::linalg::union_find::UnionFind;
 use parallel::exchange::{gather_all, sum_all};
 use petsc::{partition as by_petsc, Options, Session};
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Partitions that this process has looked for as the first rank of its communicator.
@@ -20,9 +21,9 @@ pub fn partitions() -> usize {
 
 /// `parts` groups of about equal size of all `n` subdomains; `mine` has the bonds whose lower subdomain is on this
 /// rank. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning of this type makes the groups.
-/// Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow groups here. Among
-/// candidates with the right number of connected groups, the one with the fewest dofs in common between groups is
-/// taken, since neighbours constrain an elongated group only weakly. Collective.
+/// Otherwise groups are grown in two ways, and subdomains exchanged between neighbours. Among candidates with the right
+/// number of connected groups, the one with the fewest dofs in common between groups is taken, since neighbours
+/// constrain an elongated group only weakly. Collective.
 ///
 /// # Errors
 /// PETSc's own.
@@ -36,18 +37,20 @@ pub fn partition(
     let bonds = &everywhere(session, mine)[..];
     PARTITIONS.fetch_add(usize::from(session.rank() == 0), Ordering::Relaxed);
     let chosen = Options::new(session, prefix).has("mat_partitioning_type")?;
-    let found = if session.rank() == 0 && parts > 1 {
-        let (row, col, weight) = graph(n, bonds);
-        by_petsc(session, prefix, chosen, (&row, &col, &weight), parts)
+    let near = neighbours(n, bonds);
+    let candidates = if chosen && parts > 1 {
+        let found = if session.rank() == 0 {
+            let (row, col, weight) = graph(&near);
+            by_petsc(session, prefix, (&row, &col, &weight), parts)
+        } else {
+            Ok(vec![0; n])
+        };
+        vec![session.agree(found)?]
     } else {
-        Ok(None)
+        let grown = [false, true].map(|rings| grown(&near, parts, rings));
+        let exchanged = grown.clone().map(|group| exchanged(&near, group));
+        grown.into_iter().chain(exchanged).collect()
     };
-    let found = session.agree(found)?;
-    let mut candidates = Vec::new();
-    candidates.extend(found);
-    if !chosen || parts == 1 {
-        candidates.extend([false, true].map(|rings| grown(n, bonds, parts, rings)));
-    }
     let score = |group: &Vec<u64>| -> (usize, usize) {
         let n_bodies = connected(group, bonds).iter().max().map_or(0, |b| b + 1);
         let cut = bonds.iter().filter(|b| group[b.low] != group[b.high]);
@@ -98,32 +101,76 @@ fn connected(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
     body_of
 }
 
-/// The bonds that hold as a symmetric graph in compressed rows, weighted by the number of common dofs.
-fn graph(n: usize, bonds: &[Bond]) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
-    let mut near: Vec<Vec<(i32, i32)>> = vec![Vec::new(); n];
+/// For each subdomain those that bonds hold to it, increasing, each with the number of common dofs.
+type Neighbours = [Vec<(usize, usize)>];
+
+fn neighbours(n: usize, bonds: &[Bond]) -> Vec<Vec<(usize, usize)>> {
+    let mut near = vec![Vec::new(); n];
     for bond in bonds.iter().filter(|b| b.holds) {
-        near[bond.low].push((bond.high as i32, bond.shared as i32));
-        near[bond.high].push((bond.low as i32, bond.shared as i32));
+        near[bond.low].push((bond.high, bond.shared));
+        near[bond.high].push((bond.low, bond.shared));
     }
+    near.iter_mut().for_each(|list| list.sort_unstable());
+    near
+}
+
+/// The graph in compressed rows.
+fn graph(near: &Neighbours) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
     let mut row = vec![0];
     let (mut col, mut weight) = (Vec::new(), Vec::new());
-    for list in &mut near {
-        list.sort_unstable();
-        col.extend(list.iter().map(|l| l.0));
-        weight.extend(list.iter().map(|l| l.1));
+    for list in near {
+        col.extend(list.iter().map(|l| l.0 as i32));
+        weight.extend(list.iter().map(|l| l.1 as i32));
         row.push(col.len() as i32);
     }
     (row, col, weight)
 }
 
+/// Exchanges subdomains between neighbouring groups while that leaves fewer dofs in common between groups, as Kernighan
+/// and Lin do: each subdomain at the border in turn, with the best of those that touch its group. Groups keep their
+/// sizes.
+fn exchanged(near: &Neighbours, mut group: Vec<u64>) -> Vec<u64> {
+    // The dofs that a subdomain has in common with another group, beside those with its own.
+    let gain = |group: &[u64], s: usize, to: u64| -> i64 {
+        let common = near[s].iter().map(|&(t, w)| match group[t] {
+            g if g == to => w as i64,
+            g if g == group[s] => -(w as i64),
+            _ => 0,
+        });
+        common.sum()
+    };
+    let around =
+        |group: &[u64], s: usize| -> BTreeSet<u64> { near[s].iter().map(|l| group[l.0]).collect() };
+    loop {
+        let mut changed = false;
+        for s in 0..near.len() {
+            let others = around(&group, s);
+            let mut best = (0, s);
+            for &to in others.iter().filter(|&&to| to != group[s]) {
+                let own = gain(&group, s, to);
+                let touching =
+                    |t: &usize| group[*t] == to && around(&group, *t).contains(&group[s]);
+                for t in (0..near.len()).filter(touching) {
+                    let both = near[s].iter().find(|l| l.0 == t).map_or(0, |l| l.1 as i64);
+                    let all = own + gain(&group, t, group[s]) - 2 * both;
+                    best = if all > best.0 { (all, t) } else { best };
+                }
+            }
+            if best.0 > 0 {
+                group.swap(s, best.1);
+                changed = true;
+            }
+        }
+        if !changed {
+            return group;
+        }
+    }
+}
+
 /// Grows groups one after the other from a corner of the remaining graph. The next subdomain is the one with most dofs
 /// in common with the group, or with `rings` the one nearest to the group's first.
-fn grown(n: usize, bonds: &[Bond], parts: usize, rings: bool) -> Vec<u64> {
-    let mut near: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
-    for bond in bonds.iter().filter(|b| b.holds) {
-        near[bond.low].push((bond.high, bond.shared));
-        near[bond.high].push((bond.low, bond.shared));
-    }
+fn grown(near: &Neighbours, parts: usize, rings: bool) -> Vec<u64> {
+    let n = near.len();
     let mut group = vec![u64::MAX; n];
     for g in 0..parts {
         let left = group.iter().filter(|&&x| x == u64::MAX).count();

@@ -262,8 +262,7 @@ int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double 
 
 /* ---- graphs and MATIS ---- */
 
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,
-                 int *part, int *done)
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int *part)
 {
   MatPartitioning partitioning;
   Mat             graph;
@@ -271,10 +270,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   const PetscInt *found;
   PetscInt       *i, *j, *w, k;
 
-  *done = 0;
-#if !defined(PETSC_HAVE_PTSCOTCH)
-  if (!chosen) return 0;
-#endif
   /* The matrix frees these. */
   PetscCall(PetscMalloc1(n + 1, &i));
   PetscCall(PetscMalloc1(row[n], &j));
@@ -287,7 +282,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
   PetscCall(MatPartitioningSetNParts(partitioning, parts));
   PetscCall(MatPartitioningSetUseEdgeWeights(partitioning, PETSC_TRUE));
-  if (!chosen) PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
   PetscCall(MatPartitioningSetFromOptions(partitioning));
   PetscCall(MatPartitioningApply(partitioning, &is));
   PetscCall(ISGetIndices(is, &found));
@@ -296,7 +290,6 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   PetscCall(ISDestroy(&is));
   PetscCall(MatPartitioningDestroy(&partitioning));
   PetscCall(MatDestroy(&graph));
-  *done = 1;
   return 0;
 }
 

@@ -56,10 +56,8 @@ typedef void (*ff_trace)(int line, const char *function, const char *file, int c
 int ff_push_error_handler(ff_trace trace);
 
 /* part[i] of each vertex of a symmetric graph with edge weights in compressed rows, by MatPartitioning on this process
-   alone; the options have this prefix. Without the option -<prefix>mat_partitioning_type it is PT-Scotch, and `done` is
-   0 where PETSc has none. */
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,
-                 int *part, int *done);
+   alone. The options have this prefix: -<prefix>mat_partitioning_type sets the type. */
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int *part);
 
 /* Whether the local-to-global map of a MATIS may list a dof several times, once for each of several subdomains (PETSc
    3.21 and later). */

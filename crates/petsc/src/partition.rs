@@ -6,22 +6,19 @@ use base::Result;
 use std::os::raw::c_int;
 
 /// The part (0 ≤ part < `parts`) of every vertex of a symmetric graph in compressed rows with edge weights, computed on
-/// this rank alone. The option `-<prefix>mat_partitioning_type` sets the type; the default is PT-Scotch. `None` if the
-/// default is used and PETSc was built without it.
+/// this rank alone. The option `-<prefix>mat_partitioning_type` sets the type.
 ///
 /// # Errors
 /// PETSc's own, for a type that it does not know among others.
 pub fn partition(
     _session: &Session,
     prefix: &str,
-    chosen: bool,
     (row, col, weight): (&[i32], &[i32], &[i32]),
     parts: usize,
-) -> Result<Option<Vec<u64>>> {
+) -> Result<Vec<u64>> {
     let n = row.len() - 1;
     let prefix = super::error::c_string(prefix);
     let mut part = vec![0 as c_int; n];
-    let mut done = 0;
     petsc!(ff_partition(
         prefix.as_ptr(),
         count(n)?,
@@ -29,9 +26,7 @@ pub fn partition(
         col.as_ptr(),
         weight.as_ptr(),
         count(parts)?,
-        chosen.into(),
-        part.as_mut_ptr(),
-        &mut done
+        part.as_mut_ptr()
     ))?;
-    Ok((done != 0).then(|| part.iter().map(|&p| p as u64).collect()))
+    Ok(part.iter().map(|&p| p as u64).collect())
 }

@@ -51,3 +51,29 @@ fn groups_are_round() {
         assert_eq!(group[s] == group[t], block(s) == block(t), "{group:?}");
     }
 }
+
+/// Dofs in common between groups.
+fn cut(group: &[u64], bonds: &[Bond]) -> usize {
+    let between = bonds.iter().filter(|b| group[b.low] != group[b.high]);
+    between.map(|b| b.shared).sum()
+}
+
+#[test]
+fn exchanges_keep_sizes_and_end_where_none_helps() {
+    let bonds = grid(6, 4);
+    let near = neighbours(24, &bonds);
+    // Rows of the grid in turn: the worst start.
+    for parts in [2, 3, 4] {
+        let start: Vec<u64> = (0..24).map(|s| s % parts).collect();
+        let end = exchanged(&near, start.clone());
+        let size = |group: &[u64], g: u64| group.iter().filter(|&&x| x == g).count();
+        assert!((0..parts).all(|g| size(&end, g) == size(&start, g)));
+        assert!(cut(&end, &bonds) < cut(&start, &bonds) / 2, "{end:?}");
+        // No exchange of two subdomains leaves fewer dofs in common.
+        for (s, t) in (0..24).flat_map(|s| (0..s).map(move |t| (s, t))) {
+            let mut other = end.clone();
+            other.swap(s, t);
+            assert!(cut(&other, &bonds) >= cut(&end, &bonds), "{s} {t} {end:?}");
+        }
+    }
+}
