@@ -275,14 +275,15 @@ impl FetiFeti {
         let mut active = vec![true; between.start];
         for i in between {
             let (multiplier, holds) = rows[jump.given(i)];
-            let holds = if jump.inequality[i] {
+            let holds = if jump.law[i].is_inequality() {
                 holds
             } else {
                 jump.initial[i]
             };
-            lambda.push(if holds { multiplier } else { 0.0 });
+            lambda.push(multiplier);
             active.push(holds);
         }
+        jump.release(&active, &mut lambda);
         contact::State::warm(lambda, &active)
     }
 

@@ -4,7 +4,7 @@
 use super::handle::{alone, array, lent, list, not_null, starts, together, HandlePointer};
 use super::numbering::HostNumbering;
 use super::object::Object;
-use super::rows::{pairs, row_kind, HostRow, PairSide, RowOrigin};
+use super::rows::{law, pairs, HostRow, PairSide, RowOrigin};
 use crate::Result;
 use base::Fault;
 use petsc::raw;
@@ -172,12 +172,12 @@ fn contact_row(
             "contact row {r} is empty or not finite (gap {gap}), expected coefficients other than zero and a finite gap"
         )));
     }
-    let kind = row_kind(number, || format!("contact row {r} is"))?;
+    let law = law(number, || format!("contact row {r} is"))?;
     Ok(HostRow {
         origin: RowOrigin::Rows,
         terms,
         gap,
-        kind,
+        law,
     })
 }
 
@@ -213,7 +213,7 @@ fn contact_pairs(
     gap: *const f64,
     kind: c_int,
 ) -> Result<Vec<HostRow>> {
-    let kind = row_kind(kind, || "contact pairs are".into())?;
+    let law = law(kind, || "contact pairs are".into())?;
     let first = PairSide::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
     let second = PairSide::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
     let gap = if gap.is_null() {
@@ -221,5 +221,5 @@ fn contact_pairs(
     } else {
         array(gap, first.dofs.len() as c_int, "gap")?
     };
-    pairs(o.session.rank(), &first, &second, gap, kind)
+    pairs(o.session.rank(), &first, &second, gap, law)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::surface::HostSurface;
-use crate::substructures::RowKind;
+use crate::substructures::Law;
 use crate::Result;
 use base::Fault;
 use bytemuck::{bytes_of, Pod, Zeroable};
@@ -15,7 +15,7 @@ use petsc::Session;
 pub struct GivenMortar<'a> {
     /// Numbers of the surfaces; the first one carries the multipliers.
     pub surfaces: [i32; 2],
-    pub kind: RowKind,
+    pub law: Law,
     /// How far apart they may be; 0 or less: a few edges.
     pub reach: f64,
     /// Distances up to this one count as none.
@@ -31,7 +31,7 @@ pub struct GivenMortar<'a> {
 /// A pair of surfaces, on all ranks.
 pub struct HostMortar {
     pub surfaces: [usize; 2],
-    pub kind: RowKind,
+    pub law: Law,
     pub adjust: f64,
     /// The clearance at each node of the first surface.
     pub gaps: Vec<f64>,
@@ -95,7 +95,7 @@ impl HostSurfaces<'_> {
         let of = |k: usize| at.get(&k).copied().unwrap_or_default();
         Ok(HostMortar {
             surfaces: pair,
-            kind: given.kind,
+            law: given.law,
             adjust: given.adjust.max(0.0),
             gaps: (0..n).map(|k| given.gap + of(k).0).collect(),
             without: (0..n).map(|k| of(k).1).collect(),
@@ -130,7 +130,7 @@ impl HostSurfaces<'_> {
             )));
         }
         let clear = given.gap != 0.0 || given.gaps.iter().any(|g| *g != 0.0);
-        if given.kind == RowKind::Equality && first.components > 1 && clear {
+        if !given.law.is_inequality() && first.components > 1 && clear {
             return Err(Fault::Wrong.error(format!(
                 "the tie of surfaces {a} and {b} has a gap, expected none where a node has several unknowns"
             )));
@@ -142,7 +142,7 @@ impl HostSurfaces<'_> {
     fn sent(&self, given: &GivenMortar<'_>) -> Parcels<MortarFacts, MortarNode> {
         let facts = MortarFacts {
             surfaces: given.surfaces,
-            inequality: u64::from(given.kind == RowKind::Inequality),
+            law: given.law.code().into(),
             reach: given.reach,
             adjust: given.adjust,
             gap: given.gap,
@@ -167,7 +167,7 @@ impl HostSurfaces<'_> {
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct MortarFacts {
     surfaces: [i32; 2],
-    inequality: u64,
+    law: u64,
     reach: f64,
     adjust: f64,
     gap: f64,

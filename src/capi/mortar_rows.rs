@@ -8,7 +8,7 @@ use super::object::Object;
 use super::rows::RowOrigin;
 use super::surface::HostSurface;
 use crate::embed::{GivenResults, GivenRow};
-use crate::substructures::RowKind;
+use crate::substructures::Law;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::Fault;
@@ -97,21 +97,22 @@ impl Object {
         let mut known = self.known(held, &numbers)?;
         out.counts = vec![MultiplierCounts::default(); self.mortars.len()];
         // Ties come first: nodes that they hold are not in contact.
-        for kind in [RowKind::Equality, RowKind::Inequality] {
+        for law in Law::ALL {
             for (m, mortar) in self
                 .mortars
                 .iter()
                 .enumerate()
-                .filter(|(_, m)| m.kind == kind)
+                .filter(|(_, m)| m.law == law)
             {
                 let pair = MortarPair {
                     mortar,
                     sides: mortar.surfaces.map(|s| &self.surfaces[s]),
                     numbers: mortar.surfaces.map(|s| &numbers[s]),
                 };
-                let made = match kind {
-                    RowKind::Equality => pair.ties(&known),
-                    RowKind::Inequality => pair.contacts(&known),
+                let made = if law.is_inequality() {
+                    pair.contacts(&known)
+                } else {
+                    pair.ties(&known)
                 };
                 out.counts[m] = pair.counts(&known, &made);
                 if made.is_empty() {
@@ -122,7 +123,7 @@ impl Object {
                     )));
                 }
                 for (row, component, area, node) in made {
-                    if kind == RowKind::Equality {
+                    if !law.is_inequality() {
                         known.tied.extend(pair.numbers[0][node as usize][component]);
                     }
                     if pair.sides[0].giver[node as usize] == self.session.rank() {
@@ -177,7 +178,7 @@ impl Object {
         // Pairs of the host that are tied.
         let mut mine = Vec::new();
         let pairs = self.rows.iter().filter(|r| r.origin == RowOrigin::Pairs);
-        for row in pairs.filter(|r| r.kind == RowKind::Equality) {
+        for row in pairs.filter(|r| !r.law.is_inequality()) {
             for &(whose, dof, _) in &row.terms {
                 mine.push(self.number(whose, dof, "contact pair")?);
             }
@@ -234,10 +235,7 @@ impl Object {
         let Some(mortar) = self.mortars.get(m) else {
             return String::new();
         };
-        let what = match mortar.kind {
-            RowKind::Equality => "tie",
-            RowKind::Inequality => "contact",
-        };
+        let what = mortar.law;
         let ([a, b], n) = (mortar.surfaces, mortar.gaps.len());
         let MultiplierCounts { carry, held, tied } = counts;
         format!(
@@ -373,7 +371,7 @@ impl MortarPair<'_> {
         GivenRow {
             terms,
             gap,
-            kind: self.mortar.kind,
+            law: self.mortar.law,
         }
     }
 

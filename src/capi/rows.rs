@@ -3,7 +3,7 @@
 use super::numbering::HostNumbering;
 use super::object::Object;
 use crate::embed::GivenRow;
-use crate::substructures::RowKind;
+use crate::substructures::Law;
 use crate::Result;
 use base::Fault;
 
@@ -22,19 +22,18 @@ pub struct HostRow {
     /// Unknowns and coefficients.
     pub terms: Vec<(HostNumbering, u32, f64)>,
     pub gap: f64,
-    pub kind: RowKind,
+    pub law: Law,
 }
 
-/// The row kind of a C FetiFetiRowKind.
-pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> {
-    match number {
-        0 => Ok(RowKind::Equality),
-        1 => Ok(RowKind::Inequality),
-        _ => Err(Fault::OutOfRange.error(format!(
+/// The law of a C FetiFetiRowKind.
+pub fn law(number: i32, whose: impl FnOnce() -> String) -> Result<Law> {
+    let found = u32::try_from(number).ok().and_then(Law::of_code);
+    found.ok_or_else(|| {
+        Fault::OutOfRange.error(format!(
             "{} of kind {number}, expected FETIFETI_EQUALITY (0) or FETIFETI_INEQUALITY (1)",
             whose()
-        ))),
-    }
+        ))
+    })
 }
 
 /// The unknowns on one side of the pairs, and their numbering.
@@ -80,7 +79,7 @@ pub fn pairs(
     first: &PairSide,
     second: &PairSide,
     gap: &[f64],
-    kind: RowKind,
+    law: Law,
 ) -> Result<Vec<HostRow>> {
     let n = first.dofs.len();
     if second.dofs.len() != n {
@@ -109,7 +108,7 @@ pub fn pairs(
                 (second.numbering, b as u32, -1.0),
             ],
             gap,
-            kind,
+            law,
         });
     }
     Ok(rows)
@@ -129,7 +128,7 @@ impl Object {
             Ok(GivenRow {
                 terms: terms?,
                 gap: row.gap,
-                kind: row.kind,
+                law: row.law,
             })
         };
         self.rows.iter().map(row).collect()

@@ -2,9 +2,8 @@
 
 use super::handle::{alone, array, put, starts, together, HandlePointer};
 use super::mortar::{GivenMortar, HostSurfaces};
-use super::rows::row_kind;
+use super::rows::law;
 use super::surface::{GivenSurface, HostSurface};
-use crate::substructures::RowKind;
 use base::Fault;
 use std::ffi::c_int;
 
@@ -74,10 +73,10 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
     together(ff, c"FetiFetiAddMortar", |o| {
         let n = usize::try_from(first).ok().and_then(|k| o.surfaces.get(k));
         let n = n.map_or(0, |s| s.mine.len()) as c_int;
-        let kind = row_kind(kind, || "a mortar is".into());
+        let law = law(kind, || "a mortar is".into());
         let given = GivenMortar {
             surfaces: [first, second],
-            kind: o.session.agree(kind)?,
+            law: o.session.agree(law)?,
             reach,
             adjust,
             gap,
@@ -145,9 +144,10 @@ pub unsafe extern "C" fn FetiFetiGetMortar(
                 given.surfaces[0]
             )));
         }
-        let each = match given.kind {
-            RowKind::Equality => surface.components,
-            RowKind::Inequality => 1,
+        let each = if given.law.is_inequality() {
+            1
+        } else {
+            surface.components
         };
         for (i, node) in surface.mine.iter().enumerate() {
             let component = |c| node.and_then(|node| o.at_nodes.get(&(m, node, c)));

@@ -92,7 +92,7 @@ impl Anchors {
         for i in jump.rows_between_bodies() {
             let columns = natural.all.entries(i).0.iter();
             let bodies = distinct(columns.map(|&c| pattern.bodies()[c as usize]));
-            let counts = jump.inequality[i] && nodes[i] > 0.0;
+            let counts = jump.law[i].is_inequality() && nodes[i] > 0.0;
             for body in bodies.into_iter().filter(|_| counts) {
                 for c in pattern.columns(body as usize) {
                     sums[0][c] += 1.0 / nodes[i];

@@ -48,15 +48,15 @@ pub fn wrong_signs(method: &LinearMethod, solution: &LinearSolution) -> Result<O
         leave(block, jump, &solution.lambda, pull, &mut active);
     }
     for r in jump.rows_between_bodies() {
-        if jump.inequality[r] && !solution.active[r] && solution.gaps[r] > open {
+        if !solution.active[r] && jump.law[r].violation(solution.gaps[r], false) > open {
             active[r] = true;
         }
     }
     if !any(dual.comm(), active != jump.active) {
         return Ok(None);
     }
-    let on = |(l, on): (&f64, &bool)| if *on { *l } else { 0.0 };
-    let lambda = solution.lambda.iter().zip(&active).map(on).collect();
+    let mut lambda = solution.lambda.clone();
+    jump.release(&active, &mut lambda);
     Ok(Some(State::warm(lambda, &active)))
 }
 
@@ -65,17 +65,14 @@ pub fn wrong_signs(method: &LinearMethod, solution: &LinearSolution) -> Result<O
 fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bool]) {
     let start = block.rows.start;
     let held = active[block.rows.clone()].to_vec();
-    let pulls = |r: &usize| jump.inequality[start + r] && lambda[start + r] < -pull;
+    let pulls = |r: &usize| jump.law[start + r].pull(lambda[start + r]) > pull;
     let on = |r: &usize| held[*r];
     if !(0..held.len()).filter(on).any(|r| pulls(&r)) {
         return;
     }
     let mut leaves: Vec<usize> = (0..held.len()).filter(on).filter(pulls).collect();
-    let (inequality, lambda) = (
-        &jump.inequality[block.rows.clone()],
-        &lambda[block.rows.clone()],
-    );
-    if let Some(others) = block.others(&held, inequality, lambda) {
+    let (law, lambda) = (&jump.law[block.rows.clone()], &lambda[block.rows.clone()]);
+    if let Some(others) = block.others(&held, law, lambda) {
         if others.rest <= pull {
             leaves.retain(|r| !others.rows.contains(r));
         }

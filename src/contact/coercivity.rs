@@ -13,7 +13,7 @@ use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::kernel_motion::{Coefficient, KernelMotion};
-use crate::substructures::Problem;
+use crate::substructures::{Law, Problem};
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
@@ -63,7 +63,7 @@ pub fn restore_coercivity(
             let (columns, values) = g.entries(i);
             let size: f64 = values.iter().map(|x| x.abs()).sum();
             for (d, work) in by_column.works(columns, values) {
-                let work = if jump.inequality[i] { work } else { work.abs() };
+                let work = jump.law[i].resistance(work);
                 let against = work > AGAINST * size * driven[d].largest;
                 if against && best[d].is_none_or(|(least, _)| score(i) > least) {
                     best[d] = Some((score(i), i));
@@ -79,7 +79,7 @@ pub fn restore_coercivity(
                 motion,
                 score,
                 row,
-                inequality: jump.inequality[row].into(),
+                law: jump.law[row].code().into(),
             };
             let (columns, values) = g.entries(row);
             let entries = columns.iter().zip(values);
@@ -144,7 +144,13 @@ struct Offered {
     motion: usize,
     score: f64,
     row: usize,
-    inequality: usize,
+    law: u64,
+}
+
+impl Offered {
+    fn law(&self) -> Law {
+        Law::of_code(self.law as u32).expect("a law that a rank has sent")
+    }
 }
 
 /// The row, and the rank that offers it.
@@ -252,11 +258,12 @@ impl Free {
             })
             .filter(|w| w.2.abs() > 1e-2 * AGAINST)
             .collect();
+        let law = row.offered.law();
         let opposed = works.iter().any(|&(m, _, relative)| {
             relative.abs() > AGAINST
                 && self
                     .gain(m, load)
-                    .is_some_and(|gain| row.offered.inequality == 0 || gain * relative > 0.0)
+                    .is_some_and(|gain| law.resistance(gain * relative) > 0.0)
         });
         if !opposed {
             return false;

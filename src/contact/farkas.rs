@@ -150,7 +150,11 @@ fn directions(
             [c as u64, (rounded + 0.0).to_bits()]
         });
         let entries: Vec<[u64; 2]> = entries.collect();
-        mine.push((u64::from(!jump.inequality[i]), entries.len(), entries));
+        mine.push((
+            u64::from(!jump.law[i].is_inequality()),
+            entries.len(),
+            entries,
+        ));
     }
     let mut sent = Parcels::default();
     for (free, _, entries) in distinct(mine) {

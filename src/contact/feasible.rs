@@ -26,7 +26,7 @@ fn check_mine(problem: &Problem, dual: &Dual) -> Result<()> {
         let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
         let rows = || (0..block.rows.len()).filter(candidate);
         let gap = |r: usize| jump.gap[block.rows.start + r];
-        let equation = |r: usize| !jump.inequality[block.rows.start + r];
+        let equation = |r: usize| !jump.law[block.rows.start + r].is_inequality();
         // Rows without interference are satisfied by u = 0.
         if rows().all(|r| gap(r) >= 0.0 && (gap(r) == 0.0 || !equation(r))) {
             continue;

@@ -109,10 +109,11 @@ impl JudgedRows {
         };
         let open = (NOISE * jump_left).max(open * y_max).max(ROUNDING * give);
         let pull = ROUNDING * lambda_max.max(load);
-        for r in contact.filter(|&r| jump.inequality[r]) {
-            if jump.active[r] && lambda[r] < -pull {
+        for r in contact.filter(|&r| jump.law[r].is_inequality()) {
+            let pulls = jump.law[r].pull(lambda[r]);
+            if jump.active[r] && pulls > pull {
                 rows.active[r] = false;
-                rows.wrong[r] = -lambda[r] / lambda_max;
+                rows.wrong[r] = pulls / lambda_max;
             } else if !jump.active[r] && gaps[r] > open {
                 rows.active[r] = true;
                 rows.wrong[r] = gaps[r] / y_max;
@@ -133,7 +134,7 @@ impl JudgedRows {
                 block
                     .rows
                     .clone()
-                    .filter(|&r| jump.active[r] && jump.inequality[r])
+                    .filter(|&r| jump.active[r] && jump.law[r].is_inequality())
             };
             if rows().all(|r| slack(r) == 0.0) {
                 continue;

@@ -40,7 +40,7 @@ pub fn least_distance(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
         *least = least.min(b);
     };
     // Rows that hold see nothing of these motions but rounding.
-    let open = |i: &usize| jump.inequality[*i] && !jump.active[*i];
+    let open = |i: &usize| jump.law[*i].is_inequality() && !jump.active[*i];
     for i in jump.rows_between_bodies().filter(open) {
         let (columns, values) = g.entries(i);
         let a = by_column.works(columns, values);

@@ -20,7 +20,7 @@ pub fn mean_compliance(method: &LinearMethod, nodes: &[f64]) -> Result<f64> {
     let comm = method.session.comm();
     let dual = method.dual();
     let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
-    let counts = |i: usize| jump.inequality[i] && nodes[i] > 0.0;
+    let counts = |i: usize| jump.law[i].is_inequality() && nodes[i] > 0.0;
     let scale: Vec<f64> = (0..nodes.len())
         .map(|i| {
             if counts(i) {

@@ -29,7 +29,7 @@ impl<'a> PullMonitor<'a> {
     ) -> Result<PullMonitor<'a>> {
         let all = jump.rows_between_bodies();
         let rows: Vec<usize> = all
-            .filter(|&r| jump.inequality[r] && jump.active[r])
+            .filter(|&r| jump.law[r].is_inequality() && jump.active[r])
             .collect();
         let lambda = at.lambda.array()?;
         Ok(PullMonitor {

@@ -10,6 +10,7 @@
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::springs::forceless;
+use crate::substructures::Law;
 use base::linalg::dense::Dense;
 
 /// cᵀN counts as zero below this, relative to its terms: rounding of given gaps.
@@ -22,31 +23,26 @@ pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64]) {
         let on: Vec<bool> = block
             .rows
             .clone()
-            .map(|r| carries(jump.inequality[r], lambda[r]))
+            .map(|r| jump.law[r].bears(lambda[r]))
             .collect();
         let Some((rows, b)) = block.dependent(&on) else {
             continue;
         };
         let rows: Vec<usize> = rows.iter().map(|r| block.rows.start + r).collect();
-        let inequality: Vec<bool> = rows.iter().map(|&r| jump.inequality[r]).collect();
+        let law: Vec<Law> = rows.iter().map(|&r| jump.law[r]).collect();
         let c: Vec<f64> = rows.iter().map(|&r| jump.gap[r]).collect();
         let mut own: Vec<f64> = rows.iter().map(|&r| lambda[r]).collect();
-        ratio_test_descent_at_node(&b, &inequality, &c, &mut own);
+        ratio_test_descent_at_node(&b, &law, &c, &mut own);
         rows.iter().zip(own).for_each(|(&r, l)| lambda[r] = l);
     }
 }
 
-/// Whether a row may have a multiplier, or has one.
-fn carries(inequality: bool, lambda: f64) -> bool {
-    !inequality || lambda > 0.0
-}
-
 /// Moves the multipliers of the rows `b` of one node downhill in cᵀλ, until rows with multipliers do not contradict
 /// each other. Forces Bᵀλ stay.
-fn ratio_test_descent_at_node(b: &Dense, inequality: &[bool], c: &[f64], lambda: &mut [f64]) {
+fn ratio_test_descent_at_node(b: &Dense, law: &[Law], c: &[f64], lambda: &mut [f64]) {
     // A row leaves in each pass.
     for _ in 0..lambda.len() {
-        let on = |&r: &usize| carries(inequality[r], lambda[r]);
+        let on = |&r: &usize| law[r].bears(lambda[r]);
         let rows: Vec<usize> = (0..lambda.len()).filter(on).collect();
         if rows.len() < 2 {
             return;
@@ -74,7 +70,7 @@ fn ratio_test_descent_at_node(b: &Dense, inequality: &[bool], c: &[f64], lambda:
         if level == 0.0 {
             return;
         }
-        let falls = |i: &usize| inequality[rows[*i]] && along[*i] < -1e-10 * level;
+        let falls = |i: &usize| law[rows[*i]].is_inequality() && along[*i] < -1e-10 * level;
         let ratio = |i: usize| lambda[rows[i]] / -along[i];
         let first = (0..rows.len())
             .filter(falls)
@@ -84,9 +80,7 @@ fn ratio_test_descent_at_node(b: &Dense, inequality: &[bool], c: &[f64], lambda:
         let step = ratio(first);
         for (i, &r) in rows.iter().enumerate() {
             lambda[r] += step * along[i];
-            if inequality[r] {
-                lambda[r] = lambda[r].max(0.0);
-            }
+            lambda[r] = law[r].project(lambda[r]);
         }
         lambda[rows[first]] = 0.0;
     }

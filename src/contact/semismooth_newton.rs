@@ -110,7 +110,9 @@ impl<'a> SemismoothNewton<'a> {
         let dual = method.dual();
         let stiffness = &dual.stiffness;
         let nodes = stiffness.compliance_of_rows(&method.problem)?;
-        let counts = stiffness.jump.inequality.clone();
+        let counts: Vec<bool> = (stiffness.jump.law.iter())
+            .map(|law| law.is_inequality())
+            .collect();
         let mine = counts.iter().filter(|c| **c).count();
         let loads = Loads::new(&method.problem, &dual);
         let mut at = Iterate::new(&dual, loads)?;
@@ -251,9 +253,7 @@ impl<'a> SemismoothNewton<'a> {
         let jump = &dual.stiffness.jump;
         let rows = jump.rows_between_bodies();
         let mut lambda = self.at.lambda.array_mut()?;
-        for (l, on) in lambda.iter_mut().zip(&active) {
-            *l = if *on { *l } else { 0.0 };
-        }
+        jump.release(&active, &mut lambda);
         drop(lambda);
         drop(dual);
         let begins = std::mem::take(&mut self.begins);

@@ -180,13 +180,7 @@ impl<'a> SmalbeIteration<'a> {
         let mut b = a.unscaled(&r); /*                    b = S(d − F λ̃)  */
         a.balance.project(comm, &mut b);
         let lower: Vec<f64> = (0..jump.n_owned)
-            .map(|i| {
-                if jump.inequality[i] {
-                    -shift[i]
-                } else {
-                    f64::NEG_INFINITY
-                }
-            })
+            .map(|i| jump.law[i].least() - shift[i])
             .collect();
         // Without bounds λ̃ may be the solution: b is rounding, and what the bounds add to it has the problem's size.
         let first: Vec<f64> = lower.iter().map(|l| l.max(0.0)).collect();

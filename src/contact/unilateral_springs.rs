@@ -53,12 +53,8 @@ pub fn uncarried_load(
     (e, enough): (&[f64], f64),
     lambda: &[f64],
 ) -> Option<KernelMotion> {
-    let pushes = |(&l, &unilateral): (&f64, &bool)| if unilateral { l.max(0.0) } else { l };
-    let pre: Vec<f64> = lambda
-        .iter()
-        .zip(&jump.inequality)
-        .map(|p| -pushes(p))
-        .collect();
+    let pre = lambda.iter().zip(&jump.law);
+    let pre: Vec<f64> = pre.map(|(&l, law)| -law.project(l)).collect();
     let begun = any(comm, pre.iter().any(|c| *c != 0.0));
     let mut springs = UnilateralSprings::new(comm, natural, jump, e, &pre);
     match springs.carry_load(enough, begun) {
@@ -171,7 +167,7 @@ impl<'a> UnilateralSprings<'a> {
 
     /// Whether a spring that is stretched by `s` pulls.
     fn pulls(&self, k: usize, s: f64) -> bool {
-        s > 0.0 || !self.jump.inequality[self.rows[k]]
+        self.jump.law[self.rows[k]].bears(s)
     }
 
     /// Newton's method from `alpha`. It begins with the springs that pull there, or with all. Collective.
@@ -292,8 +288,7 @@ impl<'a> UnilateralSprings<'a> {
         let mut alpha: Vec<f64> = motion.iter().map(cut).collect();
         let stands = self.along(&alpha).iter().zip(&self.rows).any(|(s, &i)| {
             let size: f64 = self.natural.all.entries(i).1.iter().map(|g| g.abs()).sum();
-            let work = if self.jump.inequality[i] { *s } else { s.abs() };
-            work > 10.0 * AGAINST * size * largest
+            self.jump.law[i].resistance(*s) > 10.0 * AGAINST * size * largest
         });
         let terms = |c: usize| [alpha[c] * self.e[c], alpha[c] * alpha[c]];
         let [work, square] = known.total(self.comm, terms);

@@ -1,10 +1,10 @@
 //! Bonds: pairs of subdomains with common dofs, and which of them hold two subdomains together without a hinge.
 //!
 //! Two subdomains with the same number of motions hold each other if equality at their common dofs excludes every
-//! relative motion. Such bonds may be chained. A subdomain with fewer motions (a single node cannot rotate) is held by a
-//! larger one, but it does not pass the hold on: two plates that a pin joins turn about it. So subdomains with equally
-//! few motions that hold each other form a cluster, and each cluster is held by one larger subdomain at most. The
-//! bonds that hold are then the edges of a forest of clusters, and no subset of them leaves a hinge.
+//! relative motion. Such bonds may be chained. A subdomain with fewer motions (a single node cannot rotate) is held by
+//! a larger one, but it does not pass the hold on: two plates that a pin joins turn about it. So subdomains with
+//! equally few motions that hold each other form a cluster, and each cluster is held by one larger subdomain at most.
+//! The bonds that hold are then the edges of a forest of clusters, and no subset of them leaves a hinge.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};

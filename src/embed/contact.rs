@@ -9,7 +9,7 @@ use super::known_dofs::KnownDofs;
 use super::placed::LocatedRow;
 use super::torn::GivenRow;
 use super::touched::{RankProblem, Touched};
-use crate::substructures::{Row, RowKind};
+use crate::substructures::Row;
 use crate::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange, exchange_by_rank, total};
@@ -106,7 +106,7 @@ impl HostContact {
             homes,
             known,
             n_global,
-            inequalities: any(comm, given.iter().any(|r| r.kind == RowKind::Inequality)),
+            inequalities: any(comm, given.iter().any(|r| r.law.is_inequality())),
         })
     }
 

@@ -5,9 +5,10 @@
 //! ```
 //!
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. The other data of the method are
-//! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), pairs that hold each other (`bonds`), bodies (`bodies`),
-//! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
-//! and enough primal constraints that no subdomain floats in its body (`rigid_constraints`).
+//! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), pairs of subdomains
+//! that hold each other (`bonds`), bodies (`bodies`), the rows of B_gl that tie bodies (`rows`) and those of the host
+//! (`contact`), vertices, edges and faces (`classes`), and enough primal constraints that no subdomain floats in its
+//! body (`rigid_constraints`).
 //!
 //! The host's rows come from any rank: the owners of their dofs say where the dofs are and which rows are connected
 //! (`touched`), the rows go to the ranks that take them (`placed`), values of known dofs follow at each solve

@@ -3,7 +3,7 @@
 use super::parts::body_dof;
 use super::torn::GivenRow;
 use super::touched::{Holder, Touched};
-use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Law, Row, RowLabel, RowSource};
 use bytemuck::{Pod, Zeroable};
 use parallel::parcels::Parcels;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub struct LocatedRow {
     /// Its number among the rows that its rank gave.
     pub number: usize,
-    kind: RowKind,
+    law: Law,
     gap: f64,
     /// Its block of connected rows.
     pub block: u32,
@@ -35,7 +35,7 @@ pub struct LocatedTerm {
 pub struct SentRow {
     number: usize,
     gap: f64,
-    inequality: u32,
+    law: u32,
     block: u32,
 }
 
@@ -76,7 +76,7 @@ impl LocatedRow {
         }
         Ok(block.map(|block| LocatedRow {
             number,
-            kind: row.kind,
+            law: row.law,
             gap: row.gap,
             block,
             terms,
@@ -88,7 +88,7 @@ impl LocatedRow {
         let row = SentRow {
             number: self.number,
             gap: self.gap,
-            inequality: u32::from(self.kind == RowKind::Inequality),
+            law: self.law.code(),
             block: self.block,
         };
         to.push(row, self.terms.iter().copied());
@@ -98,10 +98,7 @@ impl LocatedRow {
     pub fn received((row, terms): (SentRow, &[LocatedTerm])) -> LocatedRow {
         LocatedRow {
             number: row.number,
-            kind: match row.inequality {
-                0 => RowKind::Equality,
-                _ => RowKind::Inequality,
-            },
+            law: Law::of_code(row.law).expect("a law that a rank has sent"),
             gap: row.gap,
             block: row.block,
             terms: terms.to_vec(),
@@ -143,7 +140,7 @@ impl LocatedRow {
                 .map(|(body, dof, c)| (body_dof(n_global, body as usize, dof), c))
                 .collect(),
             gap: self.gap,
-            kind: self.kind,
+            law: self.law,
             holds: true,
             block: self.block.into(),
             rounding: 0.0,

@@ -4,7 +4,7 @@ use super::bodies::Bodies;
 use super::contact::HostContact;
 use super::parts::{body_dof, TornSubdomain};
 use super::sharing::Sharers;
-use crate::substructures::{BodyNode, Row, RowKind, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Law, Row, RowLabel, RowSource};
 use base::linalg::sorted::distinct;
 use parallel::exchange::exchange;
 use petsc::Session;
@@ -25,7 +25,7 @@ pub fn rows(
             (body_dof(n_global, b as usize, dof), -1.0),
         ],
         gap: 0.0,
-        kind: RowKind::Equality,
+        law: Law::Tie,
         holds: true,
         block: u64::from(contact.block(dof).unwrap_or(dof)),
         rounding: 0.0,

@@ -1,7 +1,7 @@
 //! The input of a host program: subdomain matrices, not yet grouped or classified.
 
 use super::pieces::{torn_from, TornPiece};
-use crate::substructures::RowKind;
+use crate::substructures::Law;
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 use parallel::halo::Halo;
@@ -15,8 +15,8 @@ pub struct GivenRow {
     pub terms: Vec<(u32, f64)>,
     /// Right-hand side.
     pub gap: f64,
-    /// Equation or inequality.
-    pub kind: RowKind,
+    /// Which multipliers it may have.
+    pub law: Law,
 }
 
 /// The operator Σ Rᵀ K R as a sum of subdomain matrices.

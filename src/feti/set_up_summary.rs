@@ -60,7 +60,7 @@ impl SetUpSummary {
         let jump = &stiffness.jump;
         let contact = jump.active[jump.n_owned_local..].iter();
         let active = contact.filter(|a| **a).count();
-        let inequalities = jump.inequality.iter().filter(|i| **i).count();
+        let inequalities = jump.law.iter().filter(|law| law.is_inequality()).count();
         let mut counts = [active as f64, inequalities as f64];
         sum_all(comm, &mut counts);
         let mut kinds: Vec<&Arc<LocalProblem>> =

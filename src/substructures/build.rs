@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use base::linalg::csr::Csr;
 
-use super::{Entity, EntityKind, Idle, Problem, Row, RowKind, RowLabel, RowSource, Subdomain};
+use super::{Entity, EntityKind, Idle, Law, Problem, Row, RowLabel, RowSource, Subdomain};
 
 impl Problem {
     /// A problem with a body of each name and `n_subdomains` subdomains over all ranks, so far without a subdomain and
@@ -128,21 +128,21 @@ impl Row {
     /// The equation Σ coefficient · u(body dof) = `value`. It holds, its direction is exact, its block is 0.
     ///
     /// ```
-    /// use fetifeti::problem::RowKind;
+    /// use fetifeti::problem::Law;
     /// use fetifeti::Row;
     ///
     /// // Two springs are tied: dof 0 of one and dof 1 of the other move together.
     /// let tie = Row::equality([(0, 1.0), (1, -1.0)], 0.0);
     /// // The end of the second may move by 0.1 until it meets a wall. The rows share no dof: their blocks differ.
     /// let wall = Row::inequality([(2, 1.0)], 0.1).in_block(1);
-    /// assert_eq!((tie.kind, wall.kind), (RowKind::Equality, RowKind::Inequality));
+    /// assert_eq!((tie.law, wall.law), (Law::Tie, Law::Unilateral));
     /// assert_eq!(wall.gap, 0.1);
     /// ```
     pub fn equality(terms: impl Into<Vec<(u64, f64)>>, value: f64) -> Row {
         Row {
             terms: terms.into(),
             gap: value,
-            kind: RowKind::Equality,
+            law: Law::Tie,
             holds: true,
             block: 0,
             rounding: 0.0,
@@ -153,7 +153,7 @@ impl Row {
     /// The inequality Σ coefficient · u(body dof) ≤ `gap`, which holds to begin with; otherwise as [`Row::equality`].
     pub fn inequality(terms: impl Into<Vec<(u64, f64)>>, gap: f64) -> Row {
         Row {
-            kind: RowKind::Inequality,
+            law: Law::Unilateral,
             ..Row::equality(terms, gap)
         }
     }

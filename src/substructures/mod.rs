@@ -5,10 +5,12 @@
 
 mod build;
 pub mod idle;
+mod law;
 mod rows;
 
 pub use idle::Idle;
-pub use rows::{BodyNode, Row, RowKind, RowLabel, RowSource, RowState, SolvedRow};
+pub use law::{Law, RowState};
+pub use rows::{BodyNode, Row, RowLabel, RowSource, SolvedRow};
 
 use std::sync::Arc;
 

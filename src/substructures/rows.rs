@@ -5,19 +5,10 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::law::{Law, RowState};
 use base::linalg::sorted::distinct;
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{exchange, gather_all};
-
-/// The kind of a row: an equation, or an inequality that the contact loop may switch off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RowKind {
-    /// (B u)_r = c_r.
-    Equality,
-    /// (B u)_r ≤ c_r.
-    Inequality,
-}
 
 /// One row of B_gl: Σ coefficient · u(body dof), with right-hand side c.
 #[derive(Debug, Clone)]
@@ -27,8 +18,8 @@ pub struct Row {
     pub terms: Vec<(u64, f64)>,
     /// Right-hand side c_r (the gap; zero on tied faces).
     pub gap: f64,
-    /// Equation or inequality.
-    pub kind: RowKind,
+    /// Which multipliers it may have.
+    pub law: Law,
     /// Z⁰: whether the row holds initially. A row that does not hold marks candidate contact nodes: the bodies are
     /// apart there, but the preconditioner and the interface are prepared for contact.
     pub holds: bool,
@@ -128,37 +119,14 @@ impl RowLabel {
     }
 }
 
-/// The state of a row after a solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RowState {
-    /// An inequality that holds as an equation: the sides are in contact.
-    Holds,
-    /// The row does not hold: the sides are apart.
-    Open,
-    /// An equation.
-    Tied,
-}
-
-impl RowState {
-    /// The state of a row of this kind, which holds or does not.
-    fn new(kind: RowKind, holds: bool) -> RowState {
-        match (holds, kind) {
-            (false, _) => RowState::Open,
-            (true, RowKind::Inequality) => RowState::Holds,
-            (true, RowKind::Equality) => RowState::Tied,
-        }
-    }
-}
-
 /// A row of B_gl after a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SolvedRow {
     /// Its origin.
     pub label: RowLabel,
-    /// Equation or inequality.
-    pub kind: RowKind,
+    /// Which multipliers it may have.
+    pub law: Law,
     /// Whether it holds.
     pub state: RowState,
     /// λ: the force along the normal with which the first body presses on the other side.
@@ -174,8 +142,8 @@ impl SolvedRow {
     pub(crate) fn new(row: &Row, multiplier: f64, excess: f64, holds: bool) -> SolvedRow {
         SolvedRow {
             label: row.label,
-            kind: row.kind,
-            state: RowState::new(row.kind, holds),
+            law: row.law,
+            state: row.law.state(holds),
             multiplier,
             gap: -excess,
             block: row.block,
@@ -213,7 +181,7 @@ impl SolvedRow {
 
     /// Whether it is an inequality.
     pub fn is_inequality(&self) -> bool {
-        self.kind == RowKind::Inequality
+        self.law.is_inequality()
     }
 
     /// Whether it holds, as an equation or as an inequality.
@@ -272,7 +240,7 @@ impl SolvedRow {
 struct SentRow {
     source: [usize; 2],
     block: u64,
-    inequality: u32,
+    law: u32,
     holds: u32,
     /// Body and node; the largest numbers where there is none.
     members: [[usize; 2]; 2],
@@ -291,7 +259,7 @@ impl SentRow {
         SentRow {
             source: label.source.code(),
             block: row.block,
-            inequality: row.is_inequality().into(),
+            law: row.law.code(),
             holds: row.holds().into(),
             members: label.members.map(member),
             point: label.point,
@@ -306,10 +274,7 @@ impl SentRow {
     fn row(&self) -> SolvedRow {
         let member =
             |[body, node]: [usize; 2]| (body != usize::MAX).then_some(BodyNode { body, node });
-        let kind = match self.inequality {
-            0 => RowKind::Equality,
-            _ => RowKind::Inequality,
-        };
+        let law = Law::of_code(self.law).expect("a law that a rank has sent");
         SolvedRow {
             label: RowLabel {
                 source: RowSource::of_code(self.source),
@@ -319,8 +284,8 @@ impl SentRow {
                 normal: self.normal,
                 area: self.area,
             },
-            kind,
-            state: RowState::new(kind, self.holds != 0),
+            law,
+            state: law.state(self.holds != 0),
             multiplier: self.multiplier,
             gap: self.gap,
             block: self.block,

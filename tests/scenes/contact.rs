@@ -1,6 +1,6 @@
 //! Rows of contacts and obstacles: at faces, cross points, prescribed values; labels; load steps.
 
-use fetifeti::problem::{RowKind, RowLabel, RowSource};
+use fetifeti::problem::{Law, RowLabel, RowSource};
 use fetifeti::Row;
 use parallel::contiguous_share;
 use scene::{Link, Scene};
@@ -40,10 +40,7 @@ fn a_row_says_that_the_second_body_stays_above_the_first() {
             terms.sort_by_key(|t| t.0);
             assert_eq!(terms, [(4 + 5 * k, sign), (25 + 5 * k, -sign)]);
             assert_eq!(row.terms[0].1, 1.0);
-            assert_eq!(
-                (row.gap, row.kind, row.holds),
-                (0.5, RowKind::Inequality, true)
-            );
+            assert_eq!((row.gap, row.law, row.holds), (0.5, Law::Unilateral, true));
             assert_eq!(row.block, 4 + 5 * k);
         }
         let interface = &scene.interfaces[0];
@@ -83,7 +80,7 @@ fn gaps_have_three_forms() {
 
 /// (holds, inequality) of every row.
 fn kinds(scene: &Scene) -> Vec<(bool, bool)> {
-    let kind = |r: &Row| (r.holds, r.kind == RowKind::Inequality);
+    let kind = |r: &Row| (r.holds, r.law == Law::Unilateral);
     scene.rows(&|_| true).iter().map(kind).collect()
 }
 
@@ -143,13 +140,8 @@ fn cross(entries: &str) -> Vec<([usize; 2], bool)> {
         .iter()
         .zip(&rows)
         .filter(|(l, _)| l.point == [1.0, 1.0, 0.0]);
-    here.map(|(l, r)| {
-        (
-            l.members.map(|m| m.unwrap().body),
-            r.kind == RowKind::Inequality,
-        )
-    })
-    .collect()
+    here.map(|(l, r)| (l.members.map(|m| m.unwrap().body), r.law == Law::Unilateral))
+        .collect()
 }
 
 #[test]

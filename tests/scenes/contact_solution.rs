@@ -4,7 +4,7 @@
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Side;
-use fetifeti::problem::{RowKind, RowLabel, RowSource};
+use fetifeti::problem::{Law, RowLabel, RowSource};
 use scene::{Numbering, Scene};
 
 /// min ½ uᵀKu − fᵀu over B u ≤ g, on the unknowns of the numbering.
@@ -61,7 +61,7 @@ impl Problem {
             labels: Vec::new(),
         };
         for (row, gap) in scene.rows(&|_| true).iter().zip(gaps) {
-            if row.kind == RowKind::Inequality {
+            if row.law == Law::Unilateral {
                 let terms = row
                     .terms
                     .iter()

@@ -1,7 +1,7 @@
 //! Numbers of rows, dofs and vertices of scenes, compared with independently computed ones.
 
 use crate::support::common;
-use fetifeti::problem::RowKind;
+use fetifeti::problem::Law;
 use fetifeti::Problem;
 use parallel::contiguous_share;
 use scene::{Faces, Scene};
@@ -94,7 +94,7 @@ fn every_row_is_provided_once_whatever_the_distribution() {
             let part = scene.substructures(&|s| s % ranks == rank).unwrap();
             subdomains += part.local.len();
             for row in &part.rows {
-                assert_eq!(row.kind, RowKind::Equality);
+                assert_eq!(row.law, Law::Tie);
                 assert!(seen.insert(key(row)));
                 assert_eq!(*blocks.entry(row.block).or_insert(rank), rank);
             }

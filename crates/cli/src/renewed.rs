@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::course::Course;
 use base::{Error, Result};
 use fetifeti::inside::factorisations;
-use fetifeti::problem::{BodyNode, RowKind, RowLabel, RowSource};
+use fetifeti::problem::{BodyNode, RowLabel, RowSource};
 use fetifeti::solution::{SolvedRow, State};
 use fetifeti::FetiFeti;
 use parallel::exchange::total;
@@ -122,7 +122,7 @@ impl<'a> Renewed<'a> {
         let scene = self.scene();
         let rows = scene.rows(owns);
         let start = rows.iter().map(|row| {
-            let inequality = row.kind == RowKind::Inequality;
+            let inequality = row.law.is_inequality();
             let place = places(scene, &row.label, inequality).next();
             known.get(&place?).copied()
         });

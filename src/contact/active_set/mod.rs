@@ -236,9 +236,7 @@ impl<'a> ActiveSet<'a> {
         let dual = method.dual();
         if changed > 0 || !self.fresh {
             let mut lambda = self.at.lambda.array_mut()?;
-            for (l, on) in lambda.iter_mut().zip(&self.state.active) {
-                *l = if *on { *l } else { 0.0 };
-            }
+            dual.stiffness.jump.release(&self.state.active, &mut lambda);
             drop(lambda);
             self.at.begin(&dual)?;
             self.at.evaluate(&dual)?;

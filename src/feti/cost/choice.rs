@@ -133,7 +133,7 @@ pub fn preconditioner(
         sum.iteration += DENSE_SHARED * 2.0 * n_gamma.powi(2) + PER_DOF[space] * n_gamma;
         primal += own;
     }
-    let inequalities = jump.inequality.iter().filter(|i| **i).count() as f64;
+    let inequalities = jump.law.iter().filter(|law| law.is_inequality()).count() as f64;
     let mut all = [sum.setup, sum.more, sum.iteration, primal, inequalities];
     sum_all(comm, &mut all);
     let [setup, more, iteration, primal, inequalities] = all;

@@ -75,7 +75,7 @@ impl ProblemSizes {
         let kinds = forms::kinds(problem, &jump, &first);
         let preconditioner =
             choice::preconditioner(comm, problem, &sharing, &jump, CoarseFunctions::Vertices);
-        let contact = jump.inequality.iter().any(|i| *i);
+        let contact = jump.law.iter().any(|law| law.is_inequality());
         let forms = forms::choose(
             &kinds,
             &vec![None; kinds.len()],
@@ -120,7 +120,7 @@ impl ProblemSizes {
         }
         let contact = jump.n_owned_local..jump.n_owned;
         sums[2] = contact.clone().filter(|&r| jump.active[r]).count() as f64;
-        sums[3] = contact.filter(|&r| jump.inequality[r]).count() as f64;
+        sums[3] = contact.filter(|&r| jump.law[r].is_inequality()).count() as f64;
         sum_all(comm, &mut sums);
         sum_all(comm, &mut primal);
         let kernels = kernels(comm, problem);

@@ -2,6 +2,7 @@
 
 use super::blocks::Block;
 use super::scaling;
+use crate::substructures::Law;
 use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 
@@ -9,17 +10,17 @@ use base::linalg::nnls::nnls;
 pub struct Others {
     /// All rows of the block that may depend on each other.
     pub rows: Vec<usize>,
-    /// (row, multiplier) of those that hold, not negative on inequalities.
+    /// (row, multiplier) of those that hold, admissible by their laws.
     pub multipliers: Vec<(usize, f64)>,
     /// The largest force that they lack.
     pub rest: f64,
 }
 
 impl Block {
-    /// The multipliers, not negative on inequalities, whose forces are nearest to those of `lambda` on the rows in `on`
+    /// The admissible multipliers whose forces are nearest to those of `lambda` on the rows in `on`
     /// that may depend on each other. All slices have an entry per row of the block. `None` if no row depends on
     /// others.
-    pub fn others(&self, on: &[bool], inequality: &[bool], lambda: &[f64]) -> Option<Others> {
+    pub fn others(&self, on: &[bool], law: &[Law], lambda: &[f64]) -> Option<Others> {
         let (rows, part) = self.dependent(on)?;
         let at: Vec<usize> = (0..rows.len()).filter(|&i| on[rows[i]]).collect();
         let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
@@ -27,7 +28,7 @@ impl Block {
         let own: Vec<f64> = held.iter().map(|&r| lambda[r]).collect();
         let mut forces = vec![0.0; part.cols];
         b.add_mul(&own, &mut forces);
-        let free: Vec<bool> = held.iter().map(|&r| !inequality[r]).collect();
+        let free: Vec<bool> = held.iter().map(|&r| !law[r].is_inequality()).collect();
         let (values, rest) = nnls(&b, &forces, &free);
         Some(Others {
             rows,

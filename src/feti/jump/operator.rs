@@ -20,7 +20,7 @@ use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::jump::blocks;
-use crate::substructures::{Problem, RowKind};
+use crate::substructures::{Law, Problem};
 use parallel::exchange::{exchange, offsets, total};
 
 /// The dual space and its operators.
@@ -45,8 +45,8 @@ pub struct Jump {
     /// The right-hand side that each owned row is solved with: c, or the nearest one that the holding rows of its block
     /// can satisfy together.
     pub held: Vec<f64>,
-    /// Whether each owned row may be switched off by the contact loop.
-    pub inequality: Vec<bool>,
+    /// The law of each owned row; rows of B_loc are ties.
+    pub law: Vec<Law>,
     /// Z⁰ on the owned rows: whether the row holds to begin with.
     pub initial: Vec<bool>,
     /// Z^k on the owned rows: whether the row holds.
@@ -145,7 +145,7 @@ impl Jump {
 
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
         let zeros = std::iter::repeat_n(0.0, n_owned_local);
-        let never = std::iter::repeat_n(false, n_owned_local);
+        let ties = std::iter::repeat_n(Law::Tie, n_owned_local);
         let numbered = (0..).zip(&blocks);
         let block_of = numbered.flat_map(|(k, block)| block.rows.clone().map(move |_| k));
         let mut jump = Jump {
@@ -156,9 +156,7 @@ impl Jump {
             n_owned_local,
             n_local: total(comm, n_owned_local as f64) as usize,
             gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
-            inequality: never
-                .chain(rows.iter().map(|r| r.kind == RowKind::Inequality))
-                .collect(),
+            law: ties.chain(rows.iter().map(|r| r.law)).collect(),
             initial: active.clone(),
             averages: sharing.averages.clone(),
             active,
@@ -210,7 +208,7 @@ impl Jump {
 
     /// Whether owned row `i` may hold at all. Open rows of faces that are partly tied may not.
     pub fn is_candidate(&self, i: usize) -> bool {
-        self.inequality[i] || self.initial[i]
+        self.law[i].is_inequality() || self.initial[i]
     }
 
     fn receive(&mut self, problem: &Problem, sharing: &DofSharing, entries: Vec<JumpBlockEntry>) {

@@ -13,7 +13,11 @@ impl Jump {
     pub fn implied(&self) -> Vec<bool> {
         let mut out = self.active.clone();
         for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
-            if !block.rows.clone().any(|r| self.inequality[r] && !out[r]) {
+            if !block
+                .rows
+                .clone()
+                .any(|r| self.law[r].is_inequality() && !out[r])
+            {
                 continue;
             }
             let (active, c) = (
@@ -22,10 +26,18 @@ impl Jump {
             );
             for r in block.implied(active, c) {
                 let r = block.rows.start + r;
-                out[r] |= self.inequality[r];
+                out[r] |= self.law[r].is_inequality();
             }
         }
         out
+    }
+
+    /// Gives the owned rows that do not hold in `active` the multiplier of a released row.
+    pub fn release(&self, active: &[bool], lambda: &mut [f64]) {
+        let rows = lambda.iter_mut().zip(active).zip(&self.law);
+        for ((lambda, _), law) in rows.filter(|((_, on), _)| !**on) {
+            *lambda = law.released();
+        }
     }
 
     /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for all blocks.

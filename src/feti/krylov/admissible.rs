@@ -63,7 +63,7 @@ fn closed(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option<Admissible>> {
                         0.0
                     };
                     far = far.max((gap - slack).abs());
-                } else if jump.inequality[r] && gap > CLOSED * length {
+                } else if jump.law[r].violation(gap, false) > CLOSED * length {
                     held[r] = true;
                     more = true;
                     far = far.max(gap);
@@ -170,9 +170,10 @@ fn pushing(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
             let jump = &dual.stiffness.jump;
             share(jump, &held, &mut out);
             let mut pulls = false;
-            for r in jump.rows_between_bodies().filter(|&r| jump.inequality[r]) {
-                if out[r] < 0.0 {
-                    (out[r], held[r], pulls) = (0.0, false, true);
+            for r in jump.rows_between_bodies() {
+                let law = jump.law[r];
+                if law.pull(out[r]) > 0.0 {
+                    (out[r], held[r], pulls) = (law.project(out[r]), false, true);
                 }
             }
             any(dual.comm(), pulls)
@@ -197,12 +198,12 @@ fn share(jump: &Jump, held: &[bool], lambda: &mut [f64]) {
     for block in &jump.blocks {
         let start = block.rows.start;
         let on = &held[block.rows.clone()];
-        let pulls = |r: usize| jump.inequality[start + r] && lambda[start + r] < 0.0;
+        let pulls = |r: usize| jump.law[start + r].pull(lambda[start + r]) > 0.0;
         if !(0..on.len()).any(|r| on[r] && pulls(r)) {
             continue;
         }
         let of_block = block.rows.clone();
-        let others = block.others(on, &jump.inequality[of_block.clone()], &lambda[of_block]);
+        let others = block.others(on, &jump.law[of_block.clone()], &lambda[of_block]);
         let Some(others) = others else {
             continue;
         };

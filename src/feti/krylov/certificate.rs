@@ -8,7 +8,7 @@ use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use base::linalg::strained::strained;
-use parallel::exchange::{max_all, min_all, sum_all};
+use parallel::exchange::{max_all, sum_all};
 use petsc::Vec as PetscVec;
 
 /// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
@@ -120,27 +120,22 @@ impl Certificate {
         let forces = sums[1].sqrt() + sums[2].sqrt();
         let residual = (sums[0] + primal).sqrt();
 
-        // |u|, |λ|, violation, |λ (Bu − c)|, scale, loads of a subdomain
-        let mut largest = [0.0, 0.0, 0.0, 0.0, scale, problem.largest_load()];
-        let mut smallest = [0.0f64];
+        // |u|, |λ|, violation, |λ (Bu − c)|, scale, loads of a subdomain, pull
+        let mut largest = [0.0, 0.0, 0.0, 0.0, scale, problem.largest_load(), 0.0];
         largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
         for r in 0..jump.n_owned {
             largest[1] = largest[1].max(lambda[r].abs());
             if jump.is_candidate(r) {
                 largest[4] = largest[4].max(jump.gap[r].abs());
             }
-            if jump.inequality[r] {
-                largest[2] = largest[2].max(gaps[r]);
-                largest[3] = largest[3].max((lambda[r] * gaps[r]).abs());
-                smallest[0] = smallest[0].min(lambda[r]);
-            } else if jump.active[r] {
-                largest[2] = largest[2].max(gaps[r].abs());
-            }
+            let law = jump.law[r];
+            largest[2] = largest[2].max(law.violation(gaps[r], jump.active[r]));
+            largest[3] = largest[3].max(law.complementarity(lambda[r], gaps[r]));
+            largest[6] = largest[6].max(law.pull(lambda[r]));
         }
         drop(lambda);
         max_all(comm, &mut largest);
-        min_all(comm, &mut smallest);
-        let [u_max, lambda_max, violation, product, length, load] = largest;
+        let [u_max, lambda_max, violation, product, length, load, pull] = largest;
         let lambda_max = lambda_max.max(SMALL * load);
         let (u_least, least) = (SMALL * length, SMALL * length * sums[7].sqrt());
         Ok(Certificate {
@@ -148,7 +143,7 @@ impl Certificate {
                 stationarity: residual / positive(forces.max(least)),
                 feasibility: violation / positive(u_max.max(u_least)),
                 complementarity: product / positive(lambda_max * u_max.max(u_least)),
-                min_multiplier: smallest[0] / positive(lambda_max),
+                min_multiplier: 0.0 - pull / positive(lambda_max),
                 error: None,
             },
             left: Leftover {

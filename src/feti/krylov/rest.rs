@@ -91,7 +91,7 @@ impl LinearMethod {
             }
             out
         };
-        let open = |i: &usize| jump.inequality[*i] && !active[*i];
+        let open = |i: &usize| jump.law[*i].is_inequality() && !active[*i];
         let mut share = vec![1.0; groups.len()];
         for i in jump.rows_between_bodies().filter(open) {
             let each = closes(i, z);

@@ -72,7 +72,7 @@ impl NaturalCoarse {
     pub(super) fn slides(&self, stiffness: &Stiffness) -> bool {
         let jump = &stiffness.jump;
         let mut rows = jump.rows_between_bodies();
-        let tied = rows.any(|i| !jump.inequality[i] && jump.is_candidate(i));
+        let tied = rows.any(|i| !jump.law[i].is_inequality() && jump.is_candidate(i));
         self.r > FEW && self.columns.most() > 1 && !any(stiffness.comm(), tied)
     }
 

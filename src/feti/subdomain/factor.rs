@@ -55,7 +55,7 @@ pub(crate) fn factor(
         &forms_so_far,
         team,
         settings.operators,
-        forms::APPLICATIONS[usize::from(jump.inequality.iter().any(|i| *i))],
+        forms::APPLICATIONS[usize::from(jump.law.iter().any(|law| law.is_inequality()))],
         settings
             .memory
             .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),

@@ -9,7 +9,7 @@ fn jump(active: &[bool]) -> Jump {
     let mut jump = Jump::default();
     (jump.n_owned, jump.n_global) = (n, n);
     jump.active = active.to_vec();
-    jump.inequality = vec![true; n];
+    jump.law = vec![crate::substructures::Law::Unilateral; n];
     (jump.gap, jump.held) = (vec![0.0; n], vec![0.0; n]);
     jump
 }

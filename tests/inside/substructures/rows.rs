@@ -15,20 +15,20 @@ fn rows_travel_unchanged() {
     let given = Row {
         terms: vec![(9, 1.0)],
         gap: 0.0,
-        kind: RowKind::Inequality,
+        law: Law::Unilateral,
         holds: true,
         block: 9,
         rounding: 0.0,
         label,
     };
-    for (kind, holds, state) in [
-        (RowKind::Inequality, true, RowState::Holds),
-        (RowKind::Inequality, false, RowState::Open),
-        (RowKind::Equality, true, RowState::Tied),
-        (RowKind::Equality, false, RowState::Open),
+    for (law, holds, state) in [
+        (Law::Unilateral, true, RowState::Holds),
+        (Law::Unilateral, false, RowState::Open),
+        (Law::Tie, true, RowState::Tied),
+        (Law::Tie, false, RowState::Open),
     ] {
         let given = Row {
-            kind,
+            law,
             ..given.clone()
         };
         let row = SolvedRow::new(&given, 2.0, -0.75, holds);

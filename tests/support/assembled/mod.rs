@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use super::qp::{self, Outcome, Qp, Solved};
 use base::linalg::csr::Csr;
-use fetifeti::problem::RowKind;
+use fetifeti::problem::Law;
 use fetifeti::{Problem, Row};
 use scene::Scene;
 
@@ -99,7 +99,7 @@ impl Assembled {
                 .map(|&(d, b)| (find(&dofs, d), b))
                 .collect();
             let row_here = qp::Row::new(terms, row.gap);
-            place.push(if row.kind == RowKind::Inequality {
+            place.push(if row.law == Law::Unilateral {
                 below.push(row_here);
                 Place::Below(below.len() - 1)
             } else if row.holds {

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use base::{Error, Result};
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use fetifeti::inside::LinearMethod;
+use fetifeti::problem::Law;
 use fetifeti::solution::State;
 use parallel::exchange::exchange_by_rank;
 use petsc::Session;
@@ -69,9 +70,9 @@ impl Chunk {
 /// The owners of the rows, known to rank 0.
 #[derive(Debug)]
 pub struct CheckpointLayout {
-    /// On the owned rows: Z⁰, and whether it may change.
+    /// On the owned rows: Z⁰, and what says whether it may change.
     initial: Vec<bool>,
-    inequality: Vec<bool>,
+    law: Vec<Law>,
     /// Length of μ.
     r: usize,
     /// Rows of B_loc by subdomain, of B_gl by block; on rank 0.
@@ -117,7 +118,7 @@ impl CheckpointLayout {
         let [local, blocks] = chunks;
         CheckpointLayout {
             initial: jump.initial.clone(),
-            inequality: jump.inequality.clone(),
+            law: jump.law.clone(),
             r: dual.natural.r,
             local,
             blocks,
@@ -160,7 +161,7 @@ impl CheckpointLayout {
         // Equations are always active.
         for set in [&mut state.active, &mut state.before] {
             for (r, on) in set.iter_mut().enumerate() {
-                if !self.inequality[r] {
+                if !self.law[r].is_inequality() {
                     *on = self.initial[r];
                 }
             }

@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use super::layout::UnknownLayout;
 use super::motions::{Echelon, Functional};
 use super::potentials::Potentials;
-use fetifeti::problem::RowKind;
 use scene::Scene;
 
 /// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for
@@ -60,7 +59,7 @@ impl Inequalities {
         // Unknowns with coefficient 1 and −1.
         let mut ends: Vec<[Option<u64>; 2]> = Vec::new();
         for (row, subdomain) in all.iter().zip(subdomains) {
-            let inequality = row.kind == RowKind::Inequality;
+            let inequality = row.law.is_inequality();
             out.from.push((subdomain, inequality.then_some(ends.len())));
             if !inequality {
                 continue;

@@ -4,7 +4,7 @@ use super::*;
 use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::rows::Inequalities;
 use crate::testing::with_session;
-use fetifeti::problem::RowKind;
+use fetifeti::problem::Law;
 use fetifeti::Subdomain;
 use scene::Scene;
 
@@ -90,7 +90,7 @@ fn inequalities_bound_single_unknowns() {
         };
         let all = scene.rows(&|_| true);
         let jump = |row: &Row| row.terms.iter().map(|&(dof, b)| b * u(dof)).sum::<f64>();
-        let inequalities = all.iter().filter(|r| r.kind == RowKind::Inequality);
+        let inequalities = all.iter().filter(|r| r.law == Law::Unilateral);
         let mut combined = 0;
         for (row, bound) in inequalities.zip(&rows.rows) {
             let w = |k: usize| rows.unknowns.get(k).map_or(0.0, |&w| value(w));
@@ -99,11 +99,11 @@ fn inequalities_bound_single_unknowns() {
             combined += usize::from(layout.is_combined(row));
         }
         assert!(combined > 4, "{what}: {combined}");
-        for row in all.iter().filter(|r| r.kind == RowKind::Equality) {
+        for row in all.iter().filter(|r| r.law == Law::Tie) {
             assert!((jump(row) - row.gap).abs() < 1e-12, "{what}");
         }
         // A rigid motion of everything, as multigrid is given it.
-        if all.iter().any(|r| r.kind == RowKind::Equality) {
+        if all.iter().any(|r| r.law == Law::Tie) {
             continue;
         }
         let (centre, scale) = layout.ball();
@@ -132,10 +132,7 @@ fn the_equations_of_a_set_are_the_saddle_point_problem() {
         for (what, scene) in scenes() {
             let layout = UnknownLayout::new(&scene);
             let all = scene.rows(&|_| true);
-            let inequalities: Vec<&Row> = all
-                .iter()
-                .filter(|r| r.kind == RowKind::Inequality)
-                .collect();
+            let inequalities: Vec<&Row> = all.iter().filter(|r| r.law == Law::Unilateral).collect();
             let count = inequalities.len();
             for set in [
                 vec![true; count],
@@ -175,7 +172,7 @@ fn the_equations_of_a_set_are_the_saddle_point_problem() {
                     assert!(!on || (jump - row.gap).abs() < 1e-11, "{what}: {jump}");
                 }
                 // Ties have multipliers that the assembled problem does not know.
-                for row in all.iter().filter(|r| r.kind == RowKind::Equality) {
+                for row in all.iter().filter(|r| r.law == Law::Tie) {
                     row.terms.iter().for_each(|t| {
                         force.remove(&t.0);
                     });

@@ -20,7 +20,6 @@ use super::eliminated::EliminatedUnknowns;
 use super::frame::NodeFrame;
 use super::motions::{Echelon, Functional, Motions};
 use base::linalg::vec3::ball;
-use fetifeti::problem::RowKind;
 use fetifeti::Row;
 use scene::{Numbering, Scene};
 use std::ops::Range;
@@ -91,10 +90,7 @@ impl<'a> UnknownLayout<'a> {
         };
         layout.fill();
         let rows = scene.rows(&|_| true);
-        let inequalities: Vec<&Row> = rows
-            .iter()
-            .filter(|r| r.kind == RowKind::Inequality)
-            .collect();
+        let inequalities: Vec<&Row> = rows.iter().filter(|r| r.law.is_inequality()).collect();
         for row in &inequalities {
             let form = layout.motions.of_terms(scene, &row.terms);
             layout.all_held.insert(&form, 0.0);

@@ -6,7 +6,7 @@ use super::UnknownLayout;
 use crate::assembled::eliminated::{EliminatedUnknowns, Trouble};
 use crate::assembled::frame::{parallel, NodeFrame};
 use base::linalg::vec3::{norm, unit};
-use fetifeti::problem::{RowKind, RowSource};
+use fetifeti::problem::RowSource;
 use fetifeti::Row;
 
 /// The directions along which inequalities bound a node.
@@ -58,7 +58,7 @@ impl UnknownLayout<'_> {
     pub(super) fn eliminate(&mut self, rows: &[Row], bounded: &BoundedNodes) {
         let equations = rows
             .iter()
-            .filter(|row| row.kind == RowKind::Equality && self.is_chained(row.label.source));
+            .filter(|row| !row.law.is_inequality() && self.is_chained(row.label.source));
         let placed = equations.map(|row| {
             let terms = row.terms.iter().map(|&(dof, b)| (self.index(dof), b));
             (terms.collect(), row.gap)

@@ -1,0 +1,151 @@
+//! The law of a row: which multipliers λ it may have, and how λ goes with B u − c.
+//!
+//! ```text
+//!     tie           λ any              B u = c
+//!     unilateral    λ ≥ 0              B u ≤ c,     λ (B u − c) = 0
+//! ```
+//!
+//! Each law is a set of admissible multipliers. The dual of the set is what a gap may be, and the projection onto it is
+//! the force of a spring that stands for the row. This file alone matches on the law: the linear method, the contact
+//! loop and the certificate ask it.
+
+use std::fmt;
+
+/// The law of a row. Multipliers and gaps are in the units of the problem: a multiplier is a force, a gap B u − c a
+/// displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Law {
+    /// An equation: (B u)_r = c_r, with any multiplier.
+    Tie,
+    /// An inequality: (B u)_r ≤ c_r, with a multiplier that is not negative and that vanishes where the row is open
+    /// [Lee (3.1)-(3.3)].
+    Unilateral,
+}
+
+/// The state of a row after a solve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RowState {
+    /// An inequality that holds as an equation: the sides are in contact.
+    Holds,
+    /// The row does not hold: the sides are apart.
+    Open,
+    /// An equation.
+    Tied,
+}
+
+impl Law {
+    /// All laws, in the order of their [`code`](Law::code).
+    pub const ALL: [Law; 2] = [Law::Tie, Law::Unilateral];
+
+    /// A number for the law, as ranks, files and the C interface tell each other.
+    pub fn code(self) -> u32 {
+        match self {
+            Law::Tie => 0,
+            Law::Unilateral => 1,
+        }
+    }
+
+    /// The law with this [`code`](Law::code); `None` if there is none.
+    pub fn of_code(code: u32) -> Option<Law> {
+        Law::ALL.into_iter().find(|law| law.code() == code)
+    }
+
+    /// Whether the contact loop decides if the row holds. A row of another law holds as the problem says.
+    pub fn is_inequality(self) -> bool {
+        match self {
+            Law::Tie => false,
+            Law::Unilateral => true,
+        }
+    }
+
+    /// The least admissible multiplier; −∞ where there is none.
+    pub fn least(self) -> f64 {
+        match self {
+            Law::Tie => f64::NEG_INFINITY,
+            Law::Unilateral => 0.0,
+        }
+    }
+
+    /// The admissible multiplier nearest to λ. It is also the force of a spring of compliance C in the row's place,
+    /// which is λ = s for s = μ + (B u − c)/C if nothing bounds it.
+    pub fn project(self, lambda: f64) -> f64 {
+        match self {
+            Law::Tie => lambda,
+            Law::Unilateral => lambda.max(0.0),
+        }
+    }
+
+    /// Whether a multiplier or a spring force λ is one that the row bears: a row that bears none is released.
+    pub fn bears(self, lambda: f64) -> bool {
+        match self {
+            Law::Tie => true,
+            Law::Unilateral => lambda > 0.0,
+        }
+    }
+
+    /// How far λ is from the admissible multipliers; 0 for one of them. An inequality with a positive pull pulls.
+    pub fn pull(self, lambda: f64) -> f64 {
+        match self {
+            Law::Tie => 0.0,
+            Law::Unilateral => (-lambda).max(0.0),
+        }
+    }
+
+    /// The multiplier of a row that does not hold.
+    pub fn released(self) -> f64 {
+        match self {
+            Law::Tie | Law::Unilateral => 0.0,
+        }
+    }
+
+    /// How far B u − c = `gap` violates a row; 0 where it does not. An equation that does not `hold` is violated by
+    /// nothing, an inequality counts in any state.
+    pub fn violation(self, gap: f64, holds: bool) -> f64 {
+        match self {
+            Law::Tie if holds => gap.abs(),
+            Law::Tie => 0.0,
+            Law::Unilateral => gap.max(0.0),
+        }
+    }
+
+    /// |λ (B u − c)| where the law asks it to vanish, else 0.
+    pub fn complementarity(self, lambda: f64, gap: f64) -> f64 {
+        match self {
+            Law::Tie => 0.0,
+            Law::Unilateral => (lambda * gap).abs(),
+        }
+    }
+
+    /// How much a row that does the work `work` = gᵀα on a rigid motion α stands against that motion: it stands against
+    /// it if this is positive.
+    pub fn resistance(self, work: f64) -> f64 {
+        match self {
+            Law::Tie => work.abs(),
+            Law::Unilateral => work,
+        }
+    }
+
+    /// The state of a row, which holds or does not.
+    pub fn state(self, holds: bool) -> RowState {
+        match self {
+            _ if !holds => RowState::Open,
+            Law::Tie => RowState::Tied,
+            Law::Unilateral => RowState::Holds,
+        }
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Law::Tie => "tie",
+            Law::Unilateral => "contact",
+        })
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/substructures/law.rs"]
+mod tests;

@@ -1,0 +1,58 @@
+//! Unit tests of `src/substructures/law.rs`.
+
+use super::*;
+
+const VALUES: [f64; 7] = [-3.0, -1e-30, -0.0, 0.0, 1e-30, 0.5, 4.0];
+
+#[test]
+fn codes_are_different_and_lead_back() {
+    for (n, law) in (0..).zip(Law::ALL) {
+        assert_eq!((law.code(), Law::of_code(n)), (n, Some(law)));
+    }
+    assert_eq!(Law::of_code(Law::ALL.len() as u32), None);
+}
+
+#[test]
+fn the_projection_is_the_nearest_admissible_multiplier() {
+    for law in Law::ALL {
+        for x in VALUES {
+            let p = law.project(x);
+            // Admissible, itself its projection, and as far away as the pull says.
+            assert!(p >= law.least() && law.project(p) == p && law.pull(p) == 0.0);
+            assert_eq!((p - x).abs(), law.pull(x), "{law} {x}");
+            // No admissible multiplier is nearer: (x − p)(y − p) ≤ 0 for all of them.
+            for y in VALUES.map(|y| law.project(y)) {
+                assert!((x - p) * (y - p) <= 0.0, "{law} {x} {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn multipliers_and_gaps_are_dual() {
+    // A multiplier and a gap that violate nothing do no work where the law says so.
+    for law in Law::ALL {
+        for (lambda, gap) in VALUES.iter().flat_map(|l| VALUES.map(|g| (*l, g))) {
+            let right = law.pull(lambda) == 0.0 && law.violation(gap, true) == 0.0;
+            if right && law.complementarity(lambda, gap) == 0.0 {
+                assert_eq!(lambda * gap, 0.0, "{law} {lambda} {gap}");
+            }
+        }
+        // A released row has an admissible multiplier, and nothing violates an equation that does not hold.
+        assert_eq!(law.pull(law.released()), 0.0);
+        assert_eq!(law.is_inequality(), law.violation(1.0, false) > 0.0);
+    }
+}
+
+#[test]
+fn a_tie_bears_all_and_a_contact_pushes() {
+    for x in VALUES {
+        assert!(Law::Tie.bears(x));
+        assert_eq!(Law::Tie.resistance(x), x.abs());
+        assert_eq!(Law::Unilateral.bears(x), x > 0.0);
+        assert_eq!(Law::Unilateral.resistance(x), x);
+    }
+    let states = Law::ALL.map(|law| [law.state(true), law.state(false)]);
+    let [tie, contact] = [RowState::Tied, RowState::Holds];
+    assert_eq!(states, [tie, contact].map(|on| [on, RowState::Open]));
+}
