@@ -14,7 +14,7 @@ fn the_plan_names_bodies_and_sizes() {
     let mut paths: Vec<_> = examples.map(|e| e.expect("an entry").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     paths.sort();
-    for path in sample(3, paths) {
+    for path in sample(4, paths) {
         let out = fetifeti(&["plan", path.to_str().expect("UTF-8")]);
         assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
     }

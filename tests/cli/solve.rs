@@ -359,7 +359,7 @@ fn a_tolerance_below_rounding_is_not_reported_as_reached() {
         .iter()
         .flat_map(|scene| methods.map(|method| (*scene, method)));
     let equations = [("model_tied", "active_set"), ("jump_1e6", "active_set")];
-    for (scene, method) in sample(2, contact.chain(equations)) {
+    for (scene, method) in sample(3, contact.chain(equations)) {
         let file = format!("../../examples/scenes/{scene}.toml");
         let run = |rtol: &str| {
             let more = ["-fetifeti_contact_type", method, "-fetifeti_ksp_rtol", rtol];

@@ -87,7 +87,7 @@ fn all_methods_agree_where_nodes_do_not_match() {
         ("die", die()),
         ("floor", floored(&floor)),
     ];
-    for (name, text) in sample(2, cases) {
+    for (name, text) in sample(3, cases) {
         let file = SceneFile::new(name, &text);
         // PCBDDC and KSPFETIDP start a rank for each subdomain, which takes seconds.
         let with: &[&str] = match name {

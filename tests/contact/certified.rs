@@ -67,7 +67,7 @@ fn distance(solver: &FetiFeti, u: &[Vec<f64>], v: &[Vec<f64>]) -> f64 {
 /// The sample is every other example that takes no seconds.
 #[test]
 fn bounds_of_every_example_contain_the_error() {
-    compare(sample(2, examples(false)).collect());
+    compare(sample(3, examples(false)).collect());
     if all_cases() {
         compare(examples(true));
     }

@@ -62,7 +62,7 @@ fn judge(session: &Session, case: &Case, kind: ContactType) -> std::result::Resu
 fn random_scenes_agree_with_the_reference() {
     mpi::alone(|| {
         with_session(|session| {
-            let last = of(160, 400);
+            let last = of(120, 400);
             let fates = all_agree(session, 0..last as u64).unwrap_or_else(|why| panic!("{why}"));
             println!("solvable, unbounded, infeasible: {fates:?}");
             assert!(fates[0] > last / 2, "{fates:?}");

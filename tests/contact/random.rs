@@ -59,7 +59,7 @@ fn all_agree(session: &Session, cases: &[Case], how: How) -> std::result::Result
 fn random_scenes_by_every_method() {
     mpi::alone(|| {
         with_session(|session| {
-            let cases = Collection::new(0, of(160, 500)).solvable;
+            let cases = Collection::new(0, of(120, 500)).solvable;
             for kind in KINDS {
                 if let Err(why) = all_agree(session, &cases, kind.into()) {
                     panic!("{why}");
@@ -91,7 +91,7 @@ fn random_scenes_with_coupled_blocks() {
 #[test]
 fn scenes_without_a_solution_are_refused() {
     with_session(|session| {
-        let cases = Collection::new(0, of(250, 500));
+        let cases = Collection::new(0, of(180, 500));
         let mut wrong = Vec::new();
         for kind in KINDS {
             for case in cases.unbounded.iter().chain(&cases.infeasible) {

@@ -26,7 +26,7 @@ fn every_way_of_using_a_ksp() {
         (4, "-do split"),
         (4, "-do bodies"),
     ];
-    for (ranks, options) in sample(2, cases) {
+    for (ranks, options) in sample(3, cases) {
         let out = program.with_plugin(ranks, &format!("{options} -ksp_type fetifeti"));
         assert_eq!(out.code, 0, "{options}: {}", out.all());
         assert!(

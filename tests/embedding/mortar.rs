@@ -63,7 +63,7 @@ fn rows_with_many_terms() {
         ("-dim 3 -order 1 -components 3 -kind 0", 8.0),
         ("-dim 3 -order 2 -components 1 -kind 1", 10.0),
     ];
-    for (k, (options, terms)) in sample(2, cases).enumerate() {
+    for (k, (options, terms)) in sample(3, cases).enumerate() {
         against_dense(k, &format!("-by rows {options}"), terms);
     }
 }
@@ -77,7 +77,7 @@ fn mortars_are_the_rows_that_a_host_would_make() {
         "-dim 3 -order 1 -components 3 -kind 1 -spread -scale 1e-6",
         "-dim 3 -order 1 -components 1 -kind 0",
     ];
-    for (k, options) in sample(2, cases).enumerate() {
+    for (k, options) in sample(3, cases).enumerate() {
         against_dense(k, &format!("-by mortar {options}"), 0.0);
     }
 }
@@ -91,7 +91,7 @@ fn constant_pressures_of_both_orders() {
         "-dim 3 -order 1 -components 3 -kind 0",
         "-dim 3 -order 2 -components 1 -kind 1",
     ];
-    for options in sample(2, cases) {
+    for options in sample(3, cases) {
         let options = format!("-by mortar -patch -spread {options} -fetifeti_ksp_rtol 1e-13");
         // The script fails where a pressure is off by 1e-10.
         let out = script("tests/plugin/mortar.py", 2, &options);

@@ -48,7 +48,7 @@ fn a_cell_that_hangs_by_an_edge_or_a_node() {
         (2, "-dim 2 -n 8 -hinge 0 -fetifeti_bodies 2", 15),
         (4, "-dim 2 -n 8 -hinge 0 -fetifeti_bodies 1", 20),
     ];
-    for (ranks, options, most) in sample(2, cases) {
+    for (ranks, options, most) in sample(3, cases) {
         let out = program.run(ranks, &format!("-slices {options} -ksp_rtol 1e-10"));
         good(&out, options);
         assert!(iterations(&out)[0] <= most, "{options}: {}", out.all());

@@ -90,7 +90,7 @@ fn ex71_with_a_dirichlet_side() {
             40,
         ),
     ];
-    for (ranks, options, ours, most) in sample(2, cases) {
+    for (ranks, options, ours, most) in sample(3, cases) {
         let its = agrees(&program, &scratch, ranks, "", options, ours);
         assert!(
             its <= most,
@@ -120,7 +120,7 @@ fn ex71_with_a_null_space() {
             "-dim 2 -cells 12,12 -pde_type Elasticity -periodicity 1,0",
         ),
     ];
-    for (ranks, options) in sample(2, cases) {
+    for (ranks, options) in sample(3, cases) {
         let more =
             "-ksp_type fetifeti -ksp_rtol 1e-8 -ksp_converged_reason -ksp_view_final_residual";
         let out = program.with_plugin(ranks, &format!("{options} {more}"));
@@ -151,7 +151,7 @@ fn ex49_elasticity_with_jumps() {
         (4, "-use_nonsymbc", ""),
         (4, sponge, ""),
     ];
-    for (ranks, options, ours) in sample(2, cases) {
+    for (ranks, options, ours) in sample(3, cases) {
         let options = format!("-mx 20 -my 20 -dm_mat_type is -no_view {options}");
         if options.contains("nonsymbc") {
             let more =

@@ -116,7 +116,7 @@ fn the_same_rows_hold_on_any_ranks() {
     let cases = trackers().into_iter().filter(|c| wanted.contains(&c.name));
     scenes.extend(cases.map(|c| (c.name, c.text)));
     assert_eq!(scenes.len(), 4);
-    for (k, (name, text)) in sample(2, scenes).enumerate() {
+    for (k, (name, text)) in sample(3, scenes).enumerate() {
         let file = scratch.file(&format!("{name}.toml"), &text);
         let tables = [1, [2, 4][k % 2], 7].map(|n| {
             let out = scratch.path(&format!("{name}-{n}"));

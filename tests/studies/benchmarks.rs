@@ -113,7 +113,7 @@ fn units_do_not_matter() {
 #[test]
 fn round_bodies_have_the_pressures_of_half_spaces() {
     let dir = Scratch::new("benchmarks-round");
-    for (name, ranks) in sample(2, [("punch", 1), ("hertz-cylinder", 1), ("roller", 2)]) {
+    for (name, ranks) in sample(3, [("punch", 1), ("hertz-cylinder", 1), ("roller", 2)]) {
         let case = quick(name, ranks, &dir);
         for series in &case.series {
             let finest = series.meshes.last().expect("a mesh");
