@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::line_minimum::line_minimum;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
 use base::linalg::dense::Dense;
@@ -119,7 +120,7 @@ fn least(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Option<Vec<f64
 }
 
 /// min ½ ‖(A z − b)₊‖² + ½ δ ‖z‖² for the motions `members`, with a δ that is small beside A: by Newton's method with
-/// steps that are halved until the function falls.
+/// steps to the least value along each direction.
 fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<f64> {
     let n = members.len();
     let of = |a: &MotionConstraint| -> Vec<(usize, f64)> {
@@ -131,10 +132,8 @@ fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<
     };
     let rows: Vec<(Vec<(usize, f64)>, f64)> = rows.iter().map(|(a, b)| (of(a), *b)).collect();
     let weak = 1e-9 * rows.len() as f64 / n as f64;
-    let beyond = |z: &[f64], (a, b): &(Vec<(usize, f64)>, f64)| {
-        let along: f64 = a.iter().map(|&(j, x)| x * z[j]).sum();
-        (along - b).max(0.0)
-    };
+    let along = |a: &[(usize, f64)], z: &[f64]| -> f64 { a.iter().map(|&(j, x)| x * z[j]).sum() };
+    let beyond = |z: &[f64], (a, b): &(Vec<(usize, f64)>, f64)| (along(a, z) - b).max(0.0);
     let value = |z: &[f64]| {
         let squares: f64 = rows.iter().map(|row| beyond(z, row).powi(2)).sum();
         squares + weak * z.iter().map(|z| z * z).sum::<f64>()
@@ -157,19 +156,30 @@ fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<
             }
         }
         Semidefinite::new(&h).solve(&mut d);
-        let mut t = 1.0;
-        let next = loop {
-            let next: Vec<f64> = z.iter().zip(&d).map(|(z, d)| z + t * d).collect();
-            let then = value(&next);
-            if then < now || t < 1e-6 {
-                break (next, then);
+        let slope = |t: f64| {
+            let mut sums = [0.0, 0.0];
+            for (z, d) in z.iter().zip(&d) {
+                sums[0] += weak * d * (z + t * d);
+                sums[1] += weak * d * d;
             }
-            t *= 0.5;
+            for (a, b) in &rows {
+                let (far, opens) = (along(a, &z) - b, along(a, &d));
+                if far + t * opens > 0.0 {
+                    sums[0] += opens * (far + t * opens);
+                    sums[1] += opens * opens;
+                }
+            }
+            sums
         };
-        if next.1 >= (1.0 - 1e-12) * now {
+        let Some(t) = line_minimum(slope, true) else {
+            break;
+        };
+        let next: Vec<f64> = z.iter().zip(&d).map(|(z, d)| z + t * d).collect();
+        let then = value(&next);
+        if then >= (1.0 - 1e-12) * now {
             break;
         }
-        (z, now) = next;
+        (z, now) = (next, then);
     }
     z
 }

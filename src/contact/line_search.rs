@@ -16,11 +16,8 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::anchors::Anchors;
+use super::line_minimum::line_minimum;
 use parallel::exchange::sum_all;
-
-/// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
-/// not.
-const EVALUATIONS: usize = 60;
 
 /// A step is long enough if φ falls by this part of what the best length brings.
 const ENOUGH: f64 = 0.1;
@@ -157,40 +154,7 @@ impl Penalty<'_> {
         [from, to]: [&LineSearchPoint; 2],
         beyond: bool,
     ) -> Option<f64> {
-        // NaN is no descent either.
-        if self.slope(comm, from, to, 0.0)[0] < 0.0 {
-            // Go on below.
-        } else {
-            return None;
-        }
-        let (mut low, mut high, mut t) = (0.0, 1.0, 1.0);
-        for _ in 0..EVALUATIONS {
-            let [slope, curvature] = self.slope(comm, from, to, t);
-            if slope <= 0.0 {
-                if t == 1.0 && !beyond {
-                    return Some(1.0);
-                }
-                low = t;
-                if t == high {
-                    high *= 2.0;
-                    t = high;
-                    continue;
-                }
-            } else {
-                high = t;
-            }
-            let newton = t - slope / curvature;
-            let next = if low < newton && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-            if (next - t).abs() <= 1e-12 * next {
-                break;
-            }
-            t = next;
-        }
-        Some(if t > 0.0 { t } else { high })
+        line_minimum(|t| self.slope(comm, from, to, t), beyond)
     }
 }
 

@@ -22,6 +22,7 @@ mod force_balance;
 mod judge;
 mod lagrangian;
 mod least_distance;
+mod line_minimum;
 mod line_search;
 mod mean_compliance;
 mod mprgp;

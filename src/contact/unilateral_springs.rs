@@ -16,6 +16,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::line_minimum::line_minimum;
 use crate::feti::jump::operator::Jump;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::kernel_motion::KernelMotion;
@@ -40,9 +41,6 @@ const STEPS: usize = 60;
 
 /// A row stands against a motion if its work is above this, relative to the largest that it could be.
 const AGAINST: f64 = 1e-6;
-
-/// Largest number of evaluations of the slope along a step.
-const EVALUATIONS: usize = 50;
 
 /// The part of `e` that the rows cannot carry: none if it is below `enough` everywhere. `None` if this is not decided.
 /// `lambda` has forces on the owned rows that carry much of it, or zeros. The same on every rank. Collective.
@@ -229,7 +227,7 @@ impl<'a> UnilateralSprings<'a> {
             .collect()
     }
 
-    /// The t that minimises the function along α + t d: a zero of its slope, which is increasing and piecewise linear.
+    /// The t that minimises the function along α + t d; 0 if it does not fall.
     fn length(
         &self,
         alpha: &[f64],
@@ -258,26 +256,7 @@ impl<'a> UnilateralSprings<'a> {
                 sums[1] + constant[1],
             ]
         };
-        let start = slope(0.0)[0].abs();
-        let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
-        for _ in 0..EVALUATIONS {
-            let [s, curvature] = slope(t);
-            if s.abs() <= 1e-12 * start {
-                break;
-            }
-            if s < 0.0 {
-                low = t
-            } else {
-                high = t
-            }
-            let newton = t - s / curvature;
-            t = match (low < newton && newton < high, high.is_finite()) {
-                (true, _) => newton,
-                (false, true) => 0.5 * (low + high),
-                (false, false) => 2.0 * t,
-            };
-        }
-        t
+        line_minimum(slope, true).unwrap_or(0.0)
     }
 
     /// The part of the load along `motion`, if the load drives it and no row stands against it. Collective.
