@@ -14,13 +14,12 @@
 //! the active-set method try the set. They bring the answer to the tolerance of the user, mostly long before μ has
 //! converged.
 
-use std::time::Instant;
-
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::judge;
 use super::semismooth_newton::{NewtonOutcome, SemismoothNewton};
 use super::settings::ContactSettings;
-use super::state::{ActiveSetProgress, Observer, State, Step};
+use super::state::{ActiveSetProgress, State, Step};
+use super::strategy::{Proposal, Strategy};
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
@@ -53,203 +52,283 @@ const FINER: f64 = 0.1;
 /// short waves of multipliers need more digits for their signs than displacements.
 const MOST_DIGITS: f64 = 1e-4;
 
-/// Steps after which the loop asks whether the rows can carry the load. Most loops have ended before.
-const DOUBT: usize = 20;
-
-/// Solves from `state`, after `steps` that took `seconds`. Collective.
-pub(super) fn solve(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    mut state: State,
-    steps: Vec<Step>,
-    seconds: f64,
-    observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
-    state.safeguarded = true;
-    let mut course = LagrangianLoop {
-        method,
-        settings,
-        rtol: state.accuracy * method.ksp.tolerances()?.0,
-        clock: Instant::now(),
-        seconds,
-        before: steps.len(),
-        digits: 1.0,
-        steps,
-        observe,
-    };
-    let mut search = SemismoothNewton::new(method, &mut state)?;
-    let (mut progress, mut patience) = (ActiveSetProgress::default(), FLICKER);
-    for round in 0.. {
-        let mut inner = 0;
-        let (came, status, may_try) = loop {
-            if state.steps >= settings.max_it {
-                search.rigid();
-                let run = ActiveSet::new(method, settings, Some(&state))?;
-                return course.end(run, Status::ContactSteps);
-            }
-            let (step, status, came) = search.step(&mut state)?;
-            let wrong = step.wrong;
-            progress.note(wrong);
-            course.note(step, &state)?;
-            inner += 1;
-            // A step that is as exact as rounding permits is a step.
-            if !status.converged() && !status.broke_down() {
-                return course.finish(search, status);
-            }
-            if matches!(came, NewtonOutcome::Down | NewtonOutcome::Nowhere) {
-                break (came, status, true);
-            }
-            let early = round < EARLY && inner > 1 && came == NewtonOutcome::Near;
-            let flickers = wrong <= search.few && progress.stalled(patience);
-            if flickers {
-                (progress, patience) = (ActiveSetProgress::default(), 2 * patience);
-                if let Some((run, status)) = course.attempt(&search, &mut state, false)? {
-                    return course.end(run, status);
-                }
-                search.soften();
-            }
-            if early {
-                break (came, status, wrong <= CLOSE && !flickers);
-            }
-        };
-        let minimal = came == NewtonOutcome::Down;
-        // Where φ falls no more, rounding may have ended the last minimisation.
-        let ended = minimal || (came == NewtonOutcome::Nowhere && progress.wrong() == 0);
-        if ended && search.is_solution(course.rtol)? {
-            let status = if status.converged() {
-                status
-            } else {
-                Status::Rounding
-            };
-            return course.finish(search, status);
-        }
-        search.update(&mut state);
-        if may_try {
-            if let Some((run, status)) = course.attempt(&search, &mut state, minimal)? {
-                return course.end(run, status);
-            }
-            if minimal {
-                course.digits = (FINER * course.digits).max(MOST_DIGITS);
-            }
-        }
-        search.stiffen();
-    }
-    unreachable!("the loop returns")
+/// What the next step is.
+enum NextStep<'a> {
+    /// A Newton step of the minimisation that goes on.
+    Newton,
+    /// The first of a new minimisation, or a trial before it: the last one has come to its minimum if it is `minimal`.
+    Minimised { minimal: bool, tried: bool },
+    /// A step of a trial.
+    Trial(Box<Trial<'a>>),
+    /// What follows a trial that has failed.
+    Failed(AfterTrial),
 }
 
-/// The steps so far, and what they go by.
-struct LagrangianLoop<'a, 'o> {
+impl NextStep<'_> {
+    /// Whether a minimisation has ended, and its multipliers wait for their update.
+    fn is_minimised(&self) -> bool {
+        let after = match self {
+            NextStep::Minimised { .. } => return true,
+            NextStep::Newton => return false,
+            NextStep::Trial(trial) => trial.after,
+            NextStep::Failed(after) => *after,
+        };
+        matches!(after, AfterTrial::Soften { early: true })
+    }
+}
+
+/// What follows a trial that fails.
+#[derive(Debug, Clone, Copy)]
+enum AfterTrial {
+    /// The minimisation goes on, or has ended `early`.
+    Soften { early: bool },
+    /// The next minimisation. The trial was that of a minimum if it is `minimal`.
+    Stiffen { minimal: bool },
+}
+
+/// Steps of the active-set method from a set of the search.
+struct Trial<'a> {
+    run: ActiveSet<'a>,
+    /// The fewest wrong rows so far, and the tolerance of the step that saw them.
+    best: Option<(usize, f64)>,
+    after: AfterTrial,
+}
+
+/// Where the strategy has ended.
+enum End<'a> {
+    /// In the search.
+    Search,
+    /// In a trial.
+    Trial(Box<Trial<'a>>),
+}
+
+/// The strategy.
+pub(super) struct AugmentedLagrangian<'a> {
     method: &'a LinearMethod,
     settings: &'a ContactSettings,
     rtol: f64,
-    clock: Instant,
-    /// Seconds that the steps before this search took.
-    seconds: f64,
-    /// All steps, and the number of those before.
-    steps: Vec<Step>,
-    before: usize,
+    search: SemismoothNewton<'a>,
+    state: State,
+    /// The state during a trial, with the multipliers and the set of its last step.
+    trial_state: Option<State>,
+    next: NextStep<'a>,
+    end: Option<End<'a>>,
+    /// Minimisations so far, and Newton steps of the present one.
+    round: usize,
+    inner: usize,
+    progress: ActiveSetProgress,
+    /// Steps without progress after which a set is tried.
+    patience: usize,
     /// Factor on the tolerance of a trial of a minimum's set.
     digits: f64,
-    observe: &'a mut Observer<'o>,
 }
 
-impl<'a> LagrangianLoop<'a, '_> {
-    fn note(&mut self, step: Step, state: &State) -> Result<()> {
-        (self.observe)(&step, state)?;
-        self.steps.push(step);
-        match self.steps.len() - self.before {
-            DOUBT => super::ask(self.method, &state.lambda),
-            _ => Ok(()),
+impl<'a> AugmentedLagrangian<'a> {
+    /// The search from `state`. Collective.
+    ///
+    /// # Errors
+    /// Bodies that the load pushes away for ever; PETSc's own errors.
+    pub fn new(
+        method: &'a LinearMethod,
+        settings: &'a ContactSettings,
+        mut state: State,
+    ) -> Result<AugmentedLagrangian<'a>> {
+        state.safeguarded = true;
+        Ok(AugmentedLagrangian {
+            rtol: state.accuracy * method.ksp.tolerances()?.0,
+            search: SemismoothNewton::new(method, &mut state)?,
+            method,
+            settings,
+            state,
+            trial_state: None,
+            next: NextStep::Newton,
+            end: None,
+            round: 0,
+            inner: 0,
+            progress: ActiveSetProgress::default(),
+            patience: FLICKER,
+            digits: 1.0,
+        })
+    }
+
+    /// A Newton step, and what follows it. Collective.
+    fn newton(&mut self) -> Result<(Step, Proposal)> {
+        let (step, status, came) = self.search.step(&mut self.state)?;
+        let wrong = step.wrong;
+        self.progress.note(wrong);
+        self.inner += 1;
+        // A step that is as exact as rounding permits is a step.
+        if !status.converged() && !status.broke_down() {
+            self.end = Some(End::Search);
+            return Ok((step, Proposal::End(status)));
         }
-    }
-
-    fn elapsed(&self) -> f64 {
-        self.seconds + self.clock.elapsed().as_secs_f64()
-    }
-
-    fn finish(
-        self,
-        search: SemismoothNewton,
-        status: Status,
-    ) -> Result<(LinearSolution, Vec<Step>)> {
-        let seconds = self.elapsed();
-        let found = search.finish(&self.steps, seconds, status)?;
-        self.answer(found)
-    }
-
-    fn end(self, run: ActiveSet, status: Status) -> Result<(LinearSolution, Vec<Step>)> {
-        let seconds = self.elapsed();
-        let found = run.finish(&self.steps, seconds, status)?;
-        self.answer(found)
-    }
-
-    /// Before a loop that has not converged says so, it asks whether there is a solution.
-    fn answer(self, found: LinearSolution) -> Result<(LinearSolution, Vec<Step>)> {
-        if !found.status.converged() && self.steps.len() < self.before + DOUBT {
-            super::ask(self.method, &found.lambda)?;
+        let minimal = came == NewtonOutcome::Down;
+        if minimal || came == NewtonOutcome::Nowhere {
+            // Where φ falls no more, rounding may have ended the last minimisation.
+            let ended = minimal || self.progress.wrong() == 0;
+            if ended && self.search.is_solution(self.rtol)? {
+                let status = if status.converged() {
+                    status
+                } else {
+                    Status::Rounding
+                };
+                self.end = Some(End::Search);
+                return Ok((step, Proposal::End(status)));
+            }
+            let tried = true;
+            self.next = NextStep::Minimised { minimal, tried };
+            return Ok((step, Proposal::GoOn));
         }
-        Ok((found, self.steps))
+        let early = self.round < EARLY && self.inner > 1 && came == NewtonOutcome::Near;
+        if wrong <= self.search.few && self.progress.stalled(self.patience) {
+            (self.progress, self.patience) = (ActiveSetProgress::default(), 2 * self.patience);
+            let trial = self.trial(false, AfterTrial::Soften { early })?;
+            self.next = NextStep::Trial(trial);
+        } else if early {
+            let tried = wrong <= CLOSE;
+            self.next = NextStep::Minimised {
+                minimal: false,
+                tried,
+            };
+        }
+        Ok((step, Proposal::GoOn))
     }
 
-    /// Steps of the active-set method from the set of `state`, which is that of a minimum if it is `minimal`. Returns
-    /// the run if it has come to an end. It leaves the rows rigid. Collective.
-    fn attempt(
-        &mut self,
-        search: &SemismoothNewton,
-        state: &mut State,
-        minimal: bool,
-    ) -> Result<Option<(ActiveSet<'a>, Status)>> {
-        search.rigid();
-        let trial = State {
+    /// A trial of the set of the state, which is that of a minimum if it is `minimal`. It makes the rows rigid.
+    /// Collective.
+    fn trial(&self, minimal: bool, after: AfterTrial) -> Result<Box<Trial<'a>>> {
+        self.search.rigid();
+        let accuracy = if minimal {
+            self.digits * self.state.accuracy
+        } else {
+            self.state.accuracy
+        };
+        let start = State {
             safeguarded: false,
             progress: ActiveSetProgress::default(),
-            accuracy: if minimal {
-                self.digits * state.accuracy
-            } else {
-                state.accuracy
-            },
-            ..state.clone()
+            accuracy,
+            ..self.state.clone()
         };
-        let mut run = ActiveSet::new(self.method, self.settings, Some(&trial))?;
+        let mut run = ActiveSet::new(self.method, self.settings, Some(&start))?;
         run.open = (OPEN * self.rtol).max(judge::ROUNDING);
         run.exact = true;
         // A set that is the minimum's is solved to the end at once.
         run.tight = minimal;
-        run.length = search.length;
-        let mut best: Option<(usize, f64)> = None;
-        while state.steps < self.settings.max_it {
-            let (step, status, verdict) = run.step()?;
-            state.steps += 1;
-            let (wrong, tolerance) = (step.wrong, step.tolerance);
-            match best {
-                Some((fewest, of)) if wrong >= fewest && tolerance > FINER * of => {}
-                _ => {
-                    best = Some((wrong, tolerance));
-                    run.state.progress.begin(wrong);
-                }
-            }
-            let kept = State {
-                lambda: run.state.lambda.clone(),
-                before: run.state.before.clone(),
-                ..state.clone()
-            };
-            self.note(step, &kept)?;
-            if status.broke_down() {
-                break;
-            }
-            if verdict == ActiveSetChange::Solved || !status.converged() {
-                return Ok(Some((run, status)));
-            }
-            let patience = if run.state.progress.wrong() > CLOSE {
-                PATIENCE
-            } else {
-                2 * PATIENCE
-            };
-            let lost = run.state.progress.wrong() > search.few;
-            if lost || run.state.safeguarded || run.state.progress.stalled(patience) {
-                break;
+        run.length = self.search.length;
+        let best = None;
+        Ok(Box::new(Trial { run, best, after }))
+    }
+
+    /// A step of a trial, and what follows it. Collective.
+    fn try_set(&mut self, mut trial: Box<Trial<'a>>) -> Result<(Step, Proposal)> {
+        let run = &mut trial.run;
+        let (step, status, change) = run.try_set()?;
+        self.state.steps += 1;
+        let (wrong, tolerance) = (step.wrong, step.tolerance);
+        match trial.best {
+            Some((fewest, of)) if wrong >= fewest && tolerance > FINER * of => {}
+            _ => {
+                trial.best = Some((wrong, tolerance));
+                run.state.progress.begin(wrong);
             }
         }
-        Ok(None)
+        self.trial_state = Some(State {
+            lambda: run.state.lambda.clone(),
+            before: run.state.before.clone(),
+            ..self.state.clone()
+        });
+        let ends = change == ActiveSetChange::Solved || !status.converged();
+        if ends && !status.broke_down() {
+            self.end = Some(End::Trial(trial));
+            return Ok((step, Proposal::End(status)));
+        }
+        let progress = &run.state.progress;
+        let patience = if progress.wrong() > CLOSE {
+            PATIENCE
+        } else {
+            2 * PATIENCE
+        };
+        let lost = progress.wrong() > self.search.few || run.state.safeguarded;
+        let fails = status.broke_down() || lost || progress.stalled(patience);
+        self.next = if fails {
+            NextStep::Failed(trial.after)
+        } else {
+            NextStep::Trial(trial)
+        };
+        Ok((step, Proposal::GoOn))
+    }
+
+    /// Goes on after a trial that has failed. Collective.
+    fn go_on(&mut self, after: AfterTrial) {
+        match after {
+            AfterTrial::Soften { early } => {
+                self.search.soften();
+                if early {
+                    let (minimal, tried) = (false, false);
+                    self.next = NextStep::Minimised { minimal, tried };
+                }
+            }
+            AfterTrial::Stiffen { minimal } => {
+                if minimal {
+                    self.digits = (FINER * self.digits).max(MOST_DIGITS);
+                }
+                self.stiffen();
+            }
+        }
+    }
+
+    /// Begins the next minimisation. Collective.
+    fn stiffen(&mut self) {
+        self.search.stiffen();
+        (self.round, self.inner) = (self.round + 1, 0);
+    }
+}
+
+impl Strategy for AugmentedLagrangian<'_> {
+    fn state(&self) -> &State {
+        self.trial_state.as_ref().unwrap_or(&self.state)
+    }
+
+    fn step(&mut self) -> Result<(Step, Proposal)> {
+        loop {
+            match std::mem::replace(&mut self.next, NextStep::Newton) {
+                NextStep::Trial(trial) => return self.try_set(trial),
+                NextStep::Newton => {
+                    self.trial_state = None;
+                    return self.newton();
+                }
+                NextStep::Minimised { minimal, tried } => {
+                    self.search.update(&mut self.state);
+                    if tried {
+                        let trial = self.trial(minimal, AfterTrial::Stiffen { minimal })?;
+                        self.next = NextStep::Trial(trial);
+                    } else {
+                        self.stiffen();
+                    }
+                }
+                NextStep::Failed(after) => self.go_on(after),
+            }
+        }
+    }
+
+    fn finish(
+        mut self: Box<Self>,
+        steps: &[Step],
+        seconds: f64,
+        status: Status,
+    ) -> Result<LinearSolution> {
+        match self.end {
+            Some(End::Search) => self.search.finish(steps, seconds, status),
+            Some(End::Trial(trial)) => trial.run.end(steps, seconds, status),
+            // The steps that are allowed have come to an end before the search.
+            None => {
+                if self.next.is_minimised() {
+                    self.search.update(&mut self.state);
+                }
+                self.search.rigid();
+                let run = ActiveSet::new(self.method, self.settings, Some(&self.state))?;
+                run.end(steps, seconds, status)
+            }
+        }
     }
 }

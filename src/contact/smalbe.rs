@@ -15,13 +15,13 @@ use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::active_set::{ActiveSet, ActiveSetChange};
+use super::active_set::ActiveSet;
 use super::augmented::Augmented;
 use super::judge;
-use super::lagrangian;
 use super::mprgp::{BoundedQuadratic, Setting};
 use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, ActiveSetProgress, Observer, State, Step};
+use super::state::{changes, ActiveSetProgress, State, Step};
+use super::strategy::{Checkpoint, Proposal, Strategy};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
@@ -51,80 +51,151 @@ const STALLED: usize = 20;
 /// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
 const CLOSING_STEPS: usize = 5;
 
-/// Solves by SMALBE from `state`. Collective.
-pub(super) fn solve(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    mut state: State,
-    observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
-    let clock = Instant::now();
-    let mut steps: Vec<Step> = Vec::new();
-    let comm = method.session.comm();
-    let rtol = method.ksp.tolerances()?.0;
-    let finish = |run: ActiveSet, steps: Vec<Step>, status| {
-        let seconds = clock.elapsed().as_secs_f64();
-        Ok((run.finish(&steps, seconds, status)?, steps))
-    };
-    let mut search = SmalbeIteration::new(method, settings, &state)?;
-    // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
-    let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
-    let (mut unchanged, mut jumps) = (0, 0);
-    // The residual when the last row changed, or when it was halved, and the steps since then.
-    let (mut before, mut idle) = (f64::INFINITY, 0);
-    loop {
-        if state.steps >= settings.max_it {
-            let run = ActiveSet::new(method, settings, Some(&state))?;
-            return finish(run, steps, Status::ContactSteps);
-        }
-        let (step, settled) = search.advance(comm, &mut state, accuracy)?;
-        unchanged = match step.entered + step.left {
-            0 => unchanged + 1,
+/// The strategy.
+pub(super) struct Smalbe<'a> {
+    method: &'a LinearMethod,
+    settings: &'a ContactSettings,
+    rtol: f64,
+    search: SmalbeIteration<'a>,
+    state: State,
+    /// The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
+    accuracy: f64,
+    /// Whether the last step was that accurate.
+    settled: bool,
+    /// Steps without a change of the set.
+    unchanged: usize,
+    /// How often the search went on from the end of a trial.
+    jumps: usize,
+    /// The residual when the last row changed, or when it was halved, and the steps since then.
+    best: (f64, usize),
+    /// Whether the set of the last step is to be tried.
+    promises: bool,
+    /// A trial, and its steps.
+    trial: Option<(ActiveSet<'a>, usize)>,
+}
+
+impl<'a> Smalbe<'a> {
+    /// The search from `state`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn new(
+        method: &'a LinearMethod,
+        settings: &'a ContactSettings,
+        state: State,
+    ) -> Result<Smalbe<'a>> {
+        let rtol = method.ksp.tolerances()?.0;
+        Ok(Smalbe {
+            method,
+            settings,
+            rtol,
+            search: SmalbeIteration::new(method, settings, &state)?,
+            state,
+            accuracy: rtol.sqrt().clamp(1e-6, 1e-2),
+            settled: false,
+            unchanged: 0,
+            jumps: 0,
+            best: (f64::INFINITY, 0),
+            promises: false,
+            trial: None,
+        })
+    }
+
+    /// One step of SMALBE. Collective.
+    fn advance(&mut self) -> Result<Step> {
+        let comm = self.method.session.comm();
+        let (step, settled) = self.search.advance(comm, &mut self.state, self.accuracy)?;
+        self.settled = settled;
+        self.unchanged = match step.entered + step.left {
+            0 => self.unchanged + 1,
             _ => 0,
         };
-        if unchanged > 0 && step.residual > 0.5 * before {
-            idle += 1
-        } else {
-            (before, idle) = (step.residual, 0);
-        }
-        observe(&step, &state)?;
-        steps.push(step);
-        if idle >= STALLED {
-            drop(search);
-            let seconds = clock.elapsed().as_secs_f64();
-            return lagrangian::solve(method, settings, state, steps, seconds, observe);
-        }
+        self.best = match self.best {
+            (before, idle) if self.unchanged > 0 && step.residual > 0.5 * before => {
+                (before, idle + 1)
+            }
+            _ => (step.residual, 0),
+        };
         // A set that stays is tried even if μ is still far from its limit. The ascent of μ is slow where stiff bodies
         // hang on soft ones.
-        if !settled && unchanged != PATIENCE {
-            continue;
-        }
-        let trial = State {
+        self.promises = settled || self.unchanged == PATIENCE;
+        Ok(step)
+    }
+
+    /// A trial of the set of the state. Collective.
+    fn trial(&mut self) -> Result<ActiveSet<'a>> {
+        let start = State {
             safeguarded: false,
             progress: ActiveSetProgress::default(),
-            ..state.clone()
+            ..self.state.clone()
         };
-        let mut run = ActiveSet::new(method, settings, Some(&trial))?;
-        state.reference = run.state.reference;
-        run.open = (OPEN * rtol).max(judge::ROUNDING);
-        for _ in 0..CLOSING_STEPS {
-            run.tight = true;
-            let (step, status, verdict) = run.step()?;
-            state.steps += 1;
-            observe(&step, &run.state)?;
-            steps.push(step);
-            if verdict == ActiveSetChange::Solved || !status.converged() {
-                return finish(run, steps, status);
-            }
+        let mut run = ActiveSet::new(self.method, self.settings, Some(&start))?;
+        self.state.reference = run.state.reference;
+        run.open = (OPEN * self.rtol).max(judge::ROUNDING);
+        Ok(run)
+    }
+
+    /// Goes on after a trial whose set did not stay. Collective.
+    fn go_on(&mut self, run: &ActiveSet) -> Result<()> {
+        if self.settled {
+            self.accuracy = (0.1 * self.accuracy).max(1e-13);
         }
-        if settled {
-            accuracy = (0.1 * accuracy).max(1e-13);
+        if self.jumps < JUMPS {
+            self.jumps += 1;
+            self.search.restart(self.method.session.comm(), run)?;
         }
-        if jumps < JUMPS {
-            jumps += 1;
-            search.restart(comm, &run)?;
+        self.search.lagrangian = f64::NEG_INFINITY;
+        Ok(())
+    }
+}
+
+impl Strategy for Smalbe<'_> {
+    fn state(&self) -> &State {
+        self.trial
+            .as_ref()
+            .map_or(&self.state, |(run, _)| &run.state)
+    }
+
+    fn asks_first(&self) -> bool {
+        true
+    }
+
+    fn checkpoint(&self) -> Checkpoint {
+        if self.trial.is_none() && self.best.1 >= STALLED {
+            Checkpoint::HandOver
+        } else {
+            Checkpoint::Update
         }
-        search.lagrangian = f64::NEG_INFINITY;
+    }
+
+    fn step(&mut self) -> Result<(Step, Proposal)> {
+        if let Some((run, _)) = self.trial.take_if(|(_, steps)| *steps == CLOSING_STEPS) {
+            self.go_on(&run)?;
+        }
+        if std::mem::take(&mut self.promises) {
+            self.trial = Some((self.trial()?, 0));
+        }
+        let Some((run, steps)) = &mut self.trial else {
+            return Ok((self.advance()?, Proposal::GoOn));
+        };
+        run.tight = true;
+        let (step, proposal) = run.step()?;
+        self.state.steps += 1;
+        *steps += 1;
+        Ok((step, proposal))
+    }
+
+    fn finish(
+        self: Box<Self>,
+        steps: &[Step],
+        seconds: f64,
+        status: Status,
+    ) -> Result<LinearSolution> {
+        let run = match self.trial {
+            Some((run, _)) => run,
+            None => ActiveSet::new(self.method, self.settings, Some(&self.state))?,
+        };
+        run.end(steps, seconds, status)
     }
 }
 

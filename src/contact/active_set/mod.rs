@@ -19,7 +19,8 @@ use super::coercivity::restore_coercivity;
 use super::judge::JudgeSizes;
 use super::pull_monitor::PullMonitor;
 use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, Observer, State, Step};
+use super::state::{changes, State, Step};
+use super::strategy::{Checkpoint, Proposal, Strategy};
 use super::{farkas, judge};
 use crate::feti::krylov::iterate::{IterateMonitor, IterationControl, KrylovRun};
 use crate::feti::krylov::loads::Loads;
@@ -29,51 +30,6 @@ use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::status::Status;
 use crate::Result;
 use petsc::{Stopped, Vec as PetscVec};
-
-/// The end of the loop.
-pub(super) enum Ended {
-    /// A solution, or a tolerance that is out of reach.
-    Found(LinearSolution, Vec<Step>),
-    /// The rule finds no next set from this state, after these steps and seconds, or its sets wander.
-    HandedOver {
-        state: State,
-        steps: Vec<Step>,
-        seconds: f64,
-    },
-}
-
-/// Solves by the active-set loop. Collective.
-pub(super) fn solve(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    start: Option<&State>,
-    observe: &mut Observer,
-) -> Result<Ended> {
-    let clock = Instant::now();
-    let mut run = ActiveSet::new(method, settings, start)?;
-    let mut steps: Vec<Step> = Vec::new();
-    let status = loop {
-        if run.state.steps >= settings.max_it {
-            break Status::ContactSteps;
-        }
-        if run.state.safeguarded {
-            return Ok(Ended::HandedOver {
-                state: run.state,
-                steps,
-                seconds: clock.elapsed().as_secs_f64(),
-            });
-        }
-        let (step, status, verdict) = run.step()?;
-        observe(&step, &run.state)?;
-        steps.push(step);
-        if !status.converged() || verdict == ActiveSetChange::Solved {
-            break status;
-        }
-    };
-    let seconds = clock.elapsed().as_secs_f64();
-    let found = run.finish(&steps, seconds, status)?;
-    Ok(Ended::Found(found, steps))
-}
 
 /// Loose inner problems may have misled the sets if there was no progress for this many steps and more than [`MANY`]
 /// rows are wrong.
@@ -229,7 +185,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.
-    pub fn step(&mut self) -> Result<(Step, Status, ActiveSetChange)> {
+    pub fn try_set(&mut self) -> Result<(Step, Status, ActiveSetChange)> {
         let clock = Instant::now();
         let (session, method) = (&self.method.session, self.method);
         let changed = method.set_active(&self.state.active)?;
@@ -330,7 +286,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// The solution at the present state of the loop, after these steps. Collective.
-    pub fn finish(
+    pub fn end(
         mut self,
         steps: &[Step],
         solve_seconds: f64,
@@ -349,5 +305,39 @@ impl<'a> ActiveSet<'a> {
             stopped: Stopped::No,
         };
         method.recover(self.at, run, solve_seconds)
+    }
+}
+
+impl Strategy for ActiveSet<'_> {
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn checkpoint(&self) -> Checkpoint {
+        if self.state.safeguarded {
+            Checkpoint::HandOver
+        } else {
+            Checkpoint::Update
+        }
+    }
+
+    fn step(&mut self) -> Result<(Step, Proposal)> {
+        let (step, status, change) = self.try_set()?;
+        let ends = !status.converged() || change == ActiveSetChange::Solved;
+        let proposal = if ends {
+            Proposal::End(status)
+        } else {
+            Proposal::GoOn
+        };
+        Ok((step, proposal))
+    }
+
+    fn finish(
+        self: Box<Self>,
+        steps: &[Step],
+        seconds: f64,
+        status: Status,
+    ) -> Result<LinearSolution> {
+        self.end(steps, seconds, status)
     }
 }

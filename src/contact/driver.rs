@@ -1,0 +1,130 @@
+//! The contact loop on one page: propose, solve, judge, step, certify, doubt.
+//!
+//! A [`Strategy`](strategy::Strategy) proposes steps. The driver lets it make them, counts, observes, times and stops. The certificate has
+//! the last word: rows that it finds on the wrong side send the loop on.
+
+use std::time::Instant;
+
+use super::settings::{ContactSettings, ContactType};
+use super::state::{Observer, State, Step};
+use super::strategy::{self, Checkpoint, Proposal};
+use super::{certified_signs, farkas, feasible};
+use crate::feti::krylov::loads::Loads;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::status::Status;
+use crate::Result;
+
+/// Steps of a strategy after which the loop asks whether the rows can carry the load. Most loops have ended before.
+const DOUBT: usize = 20;
+
+/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
+/// the method hold that held before. Collective.
+///
+/// # Errors
+/// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
+pub(crate) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    start: Option<&State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    method.with_rows_kept(|| {
+        feasible::check(&method.problem, &method.dual())?;
+        certified(method, settings, start, observe)
+    })
+}
+
+/// Follows strategies until the certificate finds all rows on the right side. Collective.
+fn certified(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    start: Option<&State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    let before = start.map_or(0, |s| s.steps);
+    let begin = start.cloned();
+    let (mut found, mut steps) = follow(method, settings, settings.kind, begin, observe)?;
+    let mut accuracy = 1.0;
+    for _ in 0..certified_signs::ROUNDS {
+        let certified = method.certify(method.refine(found)?)?;
+        // A certificate that rows on the wrong side have spoilt is for the loop to mend.
+        if !certified.status.converged() && certified.status != Status::Certificate {
+            return Ok((certified, steps));
+        }
+        let Some(mut state) = certified_signs::wrong_signs(method, &certified)? else {
+            return Ok((certified, steps));
+        };
+        accuracy *= certified_signs::FURTHER;
+        state.accuracy = accuracy;
+        state.steps = before + steps.len();
+        let kind = ContactType::ActiveSet;
+        let (next, more) = follow(method, settings, kind, Some(state), observe)?;
+        let (iterations, seconds) = (certified.iterations, certified.solve_seconds);
+        steps.extend(more);
+        found = LinearSolution {
+            iterations: iterations + next.iterations,
+            solve_seconds: seconds + next.solve_seconds,
+            ..next
+        };
+    }
+    let mut last = method.certify(method.refine(found)?)?;
+    if last.status.converged() && certified_signs::wrong_signs(method, &last)?.is_some() {
+        last.status = Status::Certificate;
+    }
+    Ok((last, steps))
+}
+
+/// Follows a strategy, and those to which it hands over, to the end. The result has no certificate. Collective.
+fn follow(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    kind: ContactType,
+    start: Option<State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    let clock = Instant::now();
+    let mut steps: Vec<Step> = Vec::new();
+    let mut strategy = strategy::begin(kind, method, settings, start)?;
+    let mut asked = strategy.asks_first();
+    if asked {
+        doubt(method, &strategy.state().lambda)?;
+    }
+    // The number of steps when the strategy began.
+    let mut before = 0;
+    let status = loop {
+        if strategy.state().steps >= settings.max_it {
+            break Status::ContactSteps;
+        }
+        if strategy.checkpoint() == Checkpoint::HandOver {
+            let state = strategy.state().clone();
+            drop(strategy);
+            let kind = ContactType::AugmentedLagrangian;
+            strategy = strategy::begin(kind, method, settings, Some(state))?;
+            (before, asked) = (steps.len(), false);
+        }
+        let (step, proposal) = strategy.step()?;
+        observe(&step, strategy.state())?;
+        steps.push(step);
+        if !asked && steps.len() - before == DOUBT {
+            asked = true;
+            doubt(method, &strategy.state().lambda)?;
+        }
+        if let Proposal::End(status) = proposal {
+            break status;
+        }
+    };
+    let found = strategy.finish(&steps, clock.elapsed().as_secs_f64(), status)?;
+    if !found.status.converged() && !asked {
+        doubt(method, &found.lambda)?;
+    }
+    Ok((found, steps))
+}
+
+/// Asks whether there is a solution: returns an error that names bodies which the load pushes away for ever. Few rigid
+/// motions are asked about before the loop, many only here, from the λ where the loop is: where the loop has failed or does
+/// not end, and before a strategy that would go on for ever. Collective.
+fn doubt(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
+    let dual = method.dual();
+    let load = Loads::new(&method.problem, &dual).kernel;
+    farkas::check_many(&method.problem, &dual, &load, lambda)
+}
