@@ -134,7 +134,7 @@ fn f_m_and_p_equal_their_dense_definitions() {
                         y.copy_from(x).and_then(|()| dual.p_transpose(y)).unwrap()
                     });
 
-                    let corrected = dual.preconditioner.lifting.is_some();
+                    let corrected = dual.preconditioner.lifting().is_some();
                     let expected = if corrected {
                         &reference.m_corrected
                     } else {

@@ -110,7 +110,7 @@ pub(super) fn report(
         operators: Some(operators(session, solver.facts())),
         converged_reason: solution.status.to_string(),
         ksp_type: solver.ksp().type_name()?,
-        preconditioner: dual.preconditioner.kind.name().into(),
+        preconditioner: dual.preconditioner.kind().pc_type.name().into(),
         scaling: facts.scaling.name().into(),
         local_solver: "multifrontal".into(),
         local_ordering: "nd".into(),
@@ -157,7 +157,7 @@ pub(super) fn checks(
         .into_iter()
         .map(|(name, defect)| (name.to_string(), defect))
         .collect();
-    if solver.dual().preconditioner.kind.has_floor() {
+    if solver.dual().preconditioner.kind().floor.is_some() {
         let spectrum = match exact {
             Some(known) => Some(known),
             None => solver.spectrum()?,

@@ -26,7 +26,7 @@ use super::rounding::rounding_of_rows;
 use super::rows::KernelRows;
 use super::team_factor::TeamFactor;
 use super::weights::{choose, spread};
-use crate::feti::operators::preconditioner::Preconditioner;
+use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
 use crate::substructures::{Problem, Subdomain};
@@ -94,7 +94,7 @@ impl NaturalCoarse {
     pub fn new(
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
         (wanted, varies): (ProjectorKind, f64),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
@@ -197,7 +197,7 @@ impl NaturalCoarse {
         &mut self,
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
     ) -> Result<()> {
         self.weighted(problem, stiffness, preconditioner, 0.0)?;
         let weak = self.projector == ProjectorKind::Preconditioner && !self.is_sound()?;
@@ -226,7 +226,7 @@ impl NaturalCoarse {
         &mut self,
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
         rest: f64,
     ) -> Result<()> {
         if self.r == 0 {
