@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::course::Course;
 use super::{contact, doubts, physics};
 use base::Result;
-use fetifeti::inside::distributed::{self, CoarseSolves};
 use fetifeti::inside::factorisations;
+use fetifeti::inside::{coarse_solver::CoarseSolves, distributed};
 use fetifeti::solution::{SetUpSummary, Spectrum};
 use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
@@ -121,7 +121,7 @@ pub(super) fn report(
         }
         .into(),
         natural_coarse: match &dual.natural.gtg {
-            Some(gtg) => gtg.work()?.map(natural_coarse),
+            Some(gtg) => gtg.solver.work()?.map(natural_coarse),
             None => None,
         },
         check: None,

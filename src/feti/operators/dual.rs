@@ -7,7 +7,6 @@ use mpi::topology::SimpleCommunicator;
 
 use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::projector::gtg::Gtg;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::substructures::Problem;
 use crate::Result;
@@ -145,15 +144,9 @@ impl Dual {
     /// Description of the operators for `-fetifeti_ksp_view`.
     pub fn describe(&self) -> String {
         let (jump, natural) = (&self.stiffness.jump, &self.natural);
-        let chosen = |gtg: &Gtg| gtg.work().ok().flatten();
-        let coarse = match natural.gtg.as_ref().map(|gtg| (chosen(gtg), gtg.ksp())) {
-            None => String::new(),
-            Some((Some(work), _)) if work.iterated => {
-                format!(", G^T Q G by FGMRES around {}", work.solver)
-            }
-            Some((Some(work), _)) => format!(", G^T Q G by {}", work.solver),
-            Some((None, Some(_))) => ", G^T Q G by PETSc".into(),
-            Some((None, None)) => ", G^T G by a sparse Cholesky factor".into(),
+        let coarse = match natural.gtg.as_ref().map(|gtg| gtg.solver.describe()) {
+            Some(Ok(coarse)) => format!(", {coarse}"),
+            _ => String::new(),
         };
         format!(
             "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies{coarse})\

@@ -13,6 +13,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::blocks::{positions, ColumnBlocks};
+use super::coarse_solver::InverseSide;
 use super::column_map::ColumnMap;
 use super::columns::KernelColumns;
 use super::distributed::Distributed;
@@ -20,7 +21,7 @@ use super::gram::Gram;
 use super::gram_matrix::GramMatrix;
 use super::gram_pattern::{FactorSharing, GramPattern};
 use super::graph::BodyGraph;
-use super::gtg::{Gtg, InverseSide};
+use super::gtg::Gtg;
 use super::pattern::meeting;
 use super::rounding::rounding_of_rows;
 use super::rows::KernelRows;
@@ -217,7 +218,8 @@ impl NaturalCoarse {
 
     /// Whether P is a projection to more digits than an iteration needs.
     fn is_sound(&self) -> Result<bool> {
-        let defect = self.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
+        let gtg = self.gtg.as_ref();
+        let defect = gtg.map_or(Ok(0.0), |gtg| gtg.solver.defect())?;
         Ok(defect <= SOUND)
     }
 
@@ -349,7 +351,7 @@ impl NaturalCoarse {
             return Ok(());
         };
         let mut known = self.known.part_of(x);
-        gtg.solve(comm, &mut known, InverseSide::Plain)?;
+        gtg.solver.solve(&mut known, InverseSide::Plain)?;
         x.copy_from_slice(&self.known.whole(comm, &known));
         Ok(())
     }
