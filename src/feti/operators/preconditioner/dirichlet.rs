@@ -1,4 +1,4 @@
-//! The Dirichlet preconditioner M_D⁻¹ = Z B_D S̃ B_Dᵀ Z of [Lee, section 3.1], and the products with S that it has in
+//! The Dirichlet preconditioner M_D⁻¹ = Z B_D S̃ B_Dᵀ Z of \[Lee\] section 3.1, and the products with S that it has in
 //! common with the coarse-corrected one.
 
 use std::collections::HashMap;
