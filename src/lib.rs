@@ -152,7 +152,7 @@ pub mod inside {
     pub use crate::feti::deflation::watch;
     pub use crate::feti::interface::sharing::DofSharing;
     pub use crate::feti::jump::{operator::Jump, weights};
-    pub use crate::feti::projector::{distributed, gram::FEW};
+    pub use crate::feti::projector::{coarse_solver, distributed, gram::FEW};
     pub use crate::feti::subdomain::problem::{factorisations, LocalProblem};
     pub use crate::feti::subdomain::{equal, scaled::ScaledSubdomain, turn, which};
     pub use crate::feti::LinearMethod;

@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
+use crate::feti::projector::coarse_solver::InverseSide;
 use crate::feti::projector::column_map::ColumnMap;
 use crate::feti::projector::gram::Gram;
-use crate::feti::projector::gtg::InverseSide;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::feti::projector::refined::RefinedFactor;
 use crate::feti::projector::rows::KernelRows;

@@ -20,13 +20,6 @@ pub enum PcType {
     CoarseCorrected,
 }
 
-impl PcType {
-    /// Whether λ_min ≥ 1 with rigid rows (docs/theory.md, section 4).
-    pub fn has_floor(self) -> bool {
-        matches!(self, PcType::Dirichlet | PcType::CoarseCorrected)
-    }
-}
-
 /// The weights D of the scaled jump operator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -16,10 +16,9 @@ use super::jump::operator::Jump;
 use super::jump::weights::weights;
 use super::krylov::shells;
 use super::krylov::system::DualSystem;
-use super::lifting::correction::Lifting;
 use super::method::LinearMethod;
 use super::operators::dual::Dual;
-use super::operators::preconditioner::Preconditioner;
+use super::operators::preconditioner::{table, PreconditionerInput};
 use super::operators::stiffness::Stiffness;
 use super::primal::coarse::PrimalProblem;
 use super::primal::refinement::PrimalRefinement;
@@ -27,7 +26,7 @@ use super::primal::slack;
 use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
 use super::set_up_summary::SetUpSummary;
-use super::settings::{MethodSettings, PcType, Scaling};
+use super::settings::{MethodSettings, Scaling};
 use super::subdomain::factor::{factor, no_factor, Factored};
 use super::subdomain::retained::RetainedFactors;
 use super::subdomain::scaled::ScaledSubdomain;
@@ -132,16 +131,20 @@ impl SetUpResult {
         let many = settings.coupled;
         let mut jump = Jump::coupling(comm, problem, &sharing, many); /*      B, B_D                 */
         let mut team = Team::new(threads(session, settings))?;
-        let kind = settings.pc_type.unwrap_or_else(|| {
-            choice::preconditioner(comm, problem, &sharing, &jump, settings.coarse_functions())
-        });
+        let kind = match settings.pc_type {
+            Some(pc_type) => table::kind(pc_type),
+            None => {
+                let functions = settings.coarse_functions();
+                choice::preconditioner(comm, problem, &sharing, &jump, functions).kind
+            }
+        };
         let (Factored { locals, analysed }, added) = subdomains(
             session,
             problem,
             &sharing,
             &mut jump,
             &team,
-            (kind, scaling, settings, kept),
+            (kind.needs_s, scaling, settings, kept),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, problem);
         team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
@@ -153,20 +156,22 @@ impl SetUpResult {
             locals,
             (team, varies, settings, kept),
         )?; /* S̃⁺, F */
-        let lifting = match kind {
-            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
-                let functions = settings.coarse_functions();
-                Lifting::new(problem, &sharing, &stiffness, functions)
-                /* Z_c               */
-            })?,
-            _ => None,
-        };
-        let preconditioner =
-            Preconditioner::new(comm, kind, problem, &stiffness, lifting, settings.precision); /* M⁻¹ */
+        let preconditioner = (kind.set_up)(&PreconditionerInput {
+            problem,
+            sharing: &sharing,
+            stiffness: &stiffness,
+            settings,
+        })?; /*                                                                 M⁻¹                    */
         let natural = clock::timed(Phase::NaturalSetup, || {
             let projector = (settings.projector, varies);
             let prefix = format!("{}gtg_", settings.prefix);
-            NaturalCoarse::new(problem, &stiffness, &preconditioner, projector, &prefix)
+            NaturalCoarse::new(
+                problem,
+                &stiffness,
+                preconditioner.as_ref(),
+                projector,
+                &prefix,
+            )
         })?; /*                                                                 G, P                   */
         let dual = Dual::new(stiffness, preconditioner, natural)?;
         let facts = SetUpSummary::new(comm, &dual, scaling);
@@ -194,12 +199,12 @@ fn subdomains(
     sharing: &DofSharing,
     jump: &mut Jump,
     team: &Team,
-    (kind, scaling, settings, kept): (PcType, Scaling, &MethodSettings, Option<&RetainedFactors>),
+    (needs_s, scaling, settings, kept): (bool, Scaling, &MethodSettings, Option<&RetainedFactors>),
 ) -> Result<(Factored, Added)> {
     let comm = session.comm();
     let kept = kept.map_or(Vec::new(), |kept| kept.still(jump));
     let factored = clock::timed(Phase::LocalSetup, || {
-        factor(session, problem, jump, team, (settings, kind), &kept)
+        factor(session, problem, jump, team, (settings, needs_s), &kept)
     });
     let Factored {
         mut locals,

@@ -4,14 +4,9 @@ use crate::support::direct;
 use crate::support::session::with_session;
 use direct::{floating_scenes, tight, with_options, Direct};
 use fetifeti::settings::{MethodSettings, PcType, ProjectorKind, Scaling};
+use petsc::Named;
 use scene::Scene;
 
-const PC_TYPES: [PcType; 4] = [
-    PcType::None,
-    PcType::Lumped,
-    PcType::Dirichlet,
-    PcType::CoarseCorrected,
-];
 const PROJECTORS: [ProjectorKind; 4] = [
     ProjectorKind::Identity,
     ProjectorKind::Diagonal,
@@ -84,7 +79,7 @@ fn jumps_of_a_million_each_way() {
 fn every_preconditioner_with_every_projector() {
     with_session(|session| {
         for (name, direct) in floating_scenes() {
-            for pc in PC_TYPES {
+            for &(pc, _) in PcType::VALUES {
                 for projector in PROJECTORS {
                     let settings = tight().pc_type(pc).projector(projector);
                     let (solution, distance) = direct.run(session, &settings);

@@ -23,7 +23,9 @@ fn coarse_solvers_may_be_exchanged() {
                     let mut solver = direct.solver(session, &tight());
                     let dual = solver.dual();
                     let gtg = dual.natural.gtg.as_ref();
-                    let gtg = gtg.and_then(|g| g.ksp()).map(|k| k.type_name().unwrap());
+                    let gtg = gtg
+                        .and_then(|g| g.solver.ksp())
+                        .map(|k| k.type_name().unwrap());
                     drop(dual);
                     let solution = solver.solve().expect("solved");
                     let distance = direct.distance(&solution.u);

@@ -72,6 +72,7 @@ pub struct Reference {
     pub f: Mat<f64>,
     /// G = B R, where R are the kernels of the floating bodies.
     pub g: Mat<f64>,
+    pub m_lumped: Mat<f64>,
     pub m_dirichlet: Mat<f64>,
     pub m_corrected: Mat<f64>,
 }
@@ -162,6 +163,7 @@ impl Reference {
         let s = pick(&gamma, &gamma)
             - pick(&gamma, &inner) * pseudo_inverse(&pick(&inner, &inner)) * pick(&inner, &gamma);
         let bd_gamma = Mat::from_fn(b.nrows(), gamma.len(), |i, j| bd[(i, gamma[j])]);
+        let m_lumped = &bd_gamma * pick(&gamma, &gamma) * bd_gamma.transpose();
         let m_dirichlet = &bd_gamma * &s * bd_gamma.transpose();
 
         // Ψ: energy-minimal functions with value one at one vertex and zero at the other primal vertices of the
@@ -209,6 +211,7 @@ impl Reference {
             bd,
             f,
             g,
+            m_lumped,
             m_dirichlet,
             m_corrected,
         }

@@ -13,7 +13,7 @@ use super::record::adaptive;
 use super::solve::lines;
 use base::Result;
 use fetifeti::inside::{watch, ProblemSizes, JUMPS};
-use fetifeti::settings::{Adaptive, MethodSettings, PcType};
+use fetifeti::settings::{Adaptive, MethodSettings};
 use fetifeti::{FetiFeti, Problem};
 use parallel::team::Team;
 use petsc::Session;
@@ -197,17 +197,10 @@ fn decisions(scene: &Scene, plan: &scene::ScenePlan, sizes: &ProblemSizes) -> St
         _ => "FETI-FETI: FETI-DP inside the bodies, one-level FETI between them",
     };
     line("method", method.into());
-    let lifted = n_bodies > 1 && n_subdomains > n_bodies && sizes.multipliers_global > 0;
+    let (kind, why) = (sizes.preconditioner.kind, sizes.preconditioner.why);
     line(
         "preconditioner",
-        match (lifted, sizes.preconditioner) {
-            (false, _) => "dirichlet (M_D): there is nothing to lift".into(),
-            (_, PcType::CoarseCorrected) => {
-                "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
-            }
-            _ => "dirichlet (M_D): to lift jumps into whole bodies would cost more than it saves"
-                .into(),
-        },
+        format!("{} ({}): {why}", kind.pc_type.name(), kind.symbol),
     );
     line(
         "factorisations",

@@ -58,7 +58,7 @@ pub(super) fn report(session: &Session, scene: &Scene, sizes: &ProblemSizes) -> 
         load_steps: plan.steps,
         kinds: sizes.kinds,
         sparse: sizes.implicit_kinds,
-        preconditioner: sizes.preconditioner.name().into(),
+        preconditioner: sizes.preconditioner.kind.pc_type.name().into(),
         memory: PlannedMemory {
             factor_mb: sizes.factor_bytes / 1e6,
             dense_mb: sizes.dense_bytes / 1e6,

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::course::Course;
 use super::{contact, doubts, physics};
 use base::Result;
-use fetifeti::inside::distributed::{self, CoarseSolves};
 use fetifeti::inside::factorisations;
+use fetifeti::inside::{coarse_solver::CoarseSolves, distributed};
 use fetifeti::solution::{SetUpSummary, Spectrum};
 use fetifeti::FetiFeti;
 use parallel::exchange::sum_all;
@@ -110,7 +110,7 @@ pub(super) fn report(
         operators: Some(operators(session, solver.facts())),
         converged_reason: solution.status.to_string(),
         ksp_type: solver.ksp().type_name()?,
-        preconditioner: dual.preconditioner.kind.name().into(),
+        preconditioner: dual.preconditioner.kind().pc_type.name().into(),
         scaling: facts.scaling.name().into(),
         local_solver: "multifrontal".into(),
         local_ordering: "nd".into(),
@@ -121,7 +121,7 @@ pub(super) fn report(
         }
         .into(),
         natural_coarse: match &dual.natural.gtg {
-            Some(gtg) => gtg.work()?.map(natural_coarse),
+            Some(gtg) => gtg.solver.work()?.map(natural_coarse),
             None => None,
         },
         check: None,
@@ -157,7 +157,7 @@ pub(super) fn checks(
         .into_iter()
         .map(|(name, defect)| (name.to_string(), defect))
         .collect();
-    if solver.dual().preconditioner.kind.has_floor() {
+    if solver.dual().preconditioner.kind().floor.is_some() {
         let spectrum = match exact {
             Some(known) => Some(known),
             None => solver.spectrum()?,

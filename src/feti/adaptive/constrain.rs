@@ -95,7 +95,7 @@ fn unturned(
     let (places, condenser) = (sub.coordinates.as_deref(), Condenser::alone(Keep::Interior));
     let form = OperatorForm::Explicit;
     let mut out = LocalProblem::new(&sub.k, delta, vertices, &averages, places, condenser, form)?;
-    if like.packed.is_some() {
+    if like.operators.is_packed() {
         out.pack();
     }
     Ok(out)

@@ -12,7 +12,10 @@ use mpi::topology::SimpleCommunicator;
 use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
 use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
-use crate::feti::settings::{CoarseFunctions, PcType, Scaling};
+use crate::feti::operators::preconditioner::coarse_corrected::COARSE_CORRECTED;
+use crate::feti::operators::preconditioner::dirichlet::DIRICHLET;
+use crate::feti::operators::preconditioner::PreconditionerKind;
+use crate::feti::settings::{CoarseFunctions, Scaling};
 use crate::substructures::Problem;
 use parallel::exchange::{sum_all, total};
 
@@ -54,6 +57,15 @@ struct PreconditionerCost {
     more: f64,
     /// Seconds of an iteration with M_D.
     iteration: f64,
+}
+
+/// The preconditioner that `auto` takes.
+#[derive(Debug, Clone, Copy)]
+pub struct PreconditionerChoice {
+    /// Its kind.
+    pub kind: &'static PreconditionerKind,
+    /// Its reason, for `plan`.
+    pub why: &'static str,
 }
 
 /// The quantities that determine the number of iterations.
@@ -100,10 +112,13 @@ pub fn preconditioner(
     sharing: &DofSharing,
     jump: &Jump,
     functions: CoarseFunctions,
-) -> PcType {
+) -> PreconditionerChoice {
     let cut = problem.n_subdomains > problem.n_bodies;
     if !(cut && problem.n_bodies > 1 && jump.n_global > jump.n_local) {
-        return PcType::Dirichlet;
+        return PreconditionerChoice {
+            kind: &DIRICHLET,
+            why: "there is nothing to lift",
+        };
     }
     let neighbours = |j: usize| {
         let sub = &problem.local[j];
@@ -152,8 +167,14 @@ pub fn preconditioner(
         inequalities: inequalities > 0.0,
     };
     if estimate.pays(shape) {
-        PcType::CoarseCorrected
+        PreconditionerChoice {
+            kind: &COARSE_CORRECTED,
+            why: "jumps between bodies are lifted into whole bodies",
+        }
     } else {
-        PcType::Dirichlet
+        PreconditionerChoice {
+            kind: &DIRICHLET,
+            why: "to lift jumps into whole bodies would cost more than it saves",
+        }
     }
 }

@@ -3,14 +3,15 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{choice, forms};
+use super::choice::{self, PreconditionerChoice};
+use super::forms;
 use crate::feti::interface::sharing::DofSharing;
 use crate::feti::interface::{entities, location};
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::kernel::{self, SentFactors};
 use crate::feti::projector::freedom::FreeMotion;
 use crate::feti::projector::planned::free_motions;
-use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
+use crate::feti::settings::{CoarseFunctions, Operators, Primal};
 use crate::feti::subdomain::equal;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::Problem;
@@ -47,7 +48,7 @@ pub struct ProblemSizes {
     /// Number of these kinds with S and T as sparse solves.
     pub implicit_kinds: usize,
     /// The preconditioner that is used if the user chooses none.
-    pub preconditioner: PcType,
+    pub preconditioner: PreconditionerChoice,
     /// Bytes of the sparse factors.
     pub factor_bytes: f64,
     /// Bytes of the dense operators S, T, Ψ.
@@ -83,7 +84,7 @@ impl ProblemSizes {
             Operators::Auto,
             forms::APPLICATIONS[usize::from(contact)],
             forms::usual_memory(comm.size() as usize),
-            preconditioner == PcType::CoarseCorrected,
+            preconditioner.kind.needs_s,
         );
         let entries = team.map(kinds.len(), |k| kinds[k].factor_entries(forms[k]));
 

@@ -7,9 +7,9 @@ use mpi::topology::SimpleCommunicator;
 
 use super::panels::Panels;
 use crate::feti::projector::blocks::ColumnBlocks;
+use crate::feti::projector::coarse_solver::InverseSide;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gram_pattern::{FactorSharing, GramPattern};
-use crate::feti::projector::gtg::InverseSide;
 use crate::feti::projector::refined::RefinedFactor;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;

@@ -50,7 +50,7 @@ pub(crate) fn identities(
         ));
         out.push(("W^T F P_2 = 0", check.complement()?));
     }
-    if dual.preconditioner.lifting.is_some() {
+    if dual.preconditioner.lifting().is_some() {
         out.push(("B Z_c = 0", check.lifted()?));
         out.push(("A = Z_c^T S Z_c", check.removed()?));
     }
@@ -288,7 +288,7 @@ impl Check<'_> {
 
     /// B Z_c x for a random x.
     fn lifted(&self) -> Result<f64> {
-        let Some(lifting) = &self.dual.preconditioner.lifting else {
+        let Some(lifting) = self.dual.preconditioner.lifting() else {
             return Ok(0.0);
         };
         let stiffness = &self.dual.stiffness;
@@ -306,7 +306,7 @@ impl Check<'_> {
 
     /// Part of S Z_c x that M_C leaves for a random x. It vanishes if A is Z_cᵀ S̃ Z_c and A⁺ its inverse on its range.
     fn removed(&self) -> Result<f64> {
-        let Some(lifting) = &self.dual.preconditioner.lifting else {
+        let Some(lifting) = self.dual.preconditioner.lifting() else {
             return Ok(0.0);
         };
         let stiffness = &self.dual.stiffness;

@@ -35,8 +35,8 @@ pub fn exact(system: &Rc<DualSystem>, prefix: &str) -> Result<Option<Spectrum>> 
     let start = start_vector(&system.dual())?;
     let floor = {
         let dual = system.dual();
-        let proved = dual.preconditioner.kind.has_floor() && !dual.stiffness.has_springs();
-        proved.then_some(1.0)
+        let floor = dual.preconditioner.kind().floor;
+        floor.filter(|_| !dual.stiffness.has_springs())
     };
     let accuracy = (TOLERANCE, floor);
     let session = &system.session;

@@ -5,9 +5,8 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::feti::operators::preconditioner::Preconditioner;
+use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::projector::gtg::Gtg;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::substructures::Problem;
 use crate::Result;
@@ -19,7 +18,7 @@ pub struct Dual {
     /// S̃⁺, B and F.
     pub stiffness: Stiffness,
     /// M⁻¹.
-    pub preconditioner: Preconditioner,
+    pub preconditioner: Box<dyn DualPreconditioner>,
     /// G and P.
     pub natural: NaturalCoarse,
     /// Whether G belongs to an earlier set of rows.
@@ -32,7 +31,7 @@ impl Dual {
     /// Builds the operators. Collective.
     pub fn new(
         stiffness: Stiffness,
-        preconditioner: Preconditioner,
+        preconditioner: Box<dyn DualPreconditioner>,
         natural: NaturalCoarse,
     ) -> Result<Dual> {
         let like = PetscVec::mpi(&stiffness.session, stiffness.jump.n_owned)?;
@@ -66,7 +65,7 @@ impl Dual {
             // Until all has been renewed: an error must not leave operators of two sets.
             self.stale = true;
             self.stiffness.renew_springs();
-            let (stiffness, preconditioner) = (&self.stiffness, &self.preconditioner);
+            let (stiffness, preconditioner) = (&self.stiffness, self.preconditioner.as_ref());
             self.natural.renew(problem, stiffness, preconditioner)?;
             self.stale = false;
         }
@@ -145,31 +144,18 @@ impl Dual {
     /// Description of the operators for `-fetifeti_ksp_view`.
     pub fn describe(&self) -> String {
         let (jump, natural) = (&self.stiffness.jump, &self.natural);
-        let lifted = match &self.preconditioner.lifting {
-            Some(l) => {
-                let (rank, order) = l.rank_and_order;
-                format!(", {rank} independent of {order} coarse functions on this rank")
-            }
-            None => String::new(),
-        };
-        let chosen = |gtg: &Gtg| gtg.work().ok().flatten();
-        let coarse = match natural.gtg.as_ref().map(|gtg| (chosen(gtg), gtg.ksp())) {
-            None => String::new(),
-            Some((Some(work), _)) if work.iterated => {
-                format!(", G^T Q G by FGMRES around {}", work.solver)
-            }
-            Some((Some(work), _)) => format!(", G^T Q G by {}", work.solver),
-            Some((None, Some(_))) => ", G^T Q G by PETSc".into(),
-            Some((None, None)) => ", G^T G by a sparse Cholesky factor".into(),
+        let coarse = match natural.gtg.as_ref().map(|gtg| gtg.solver.describe()) {
+            Some(Ok(coarse)) => format!(", {coarse}"),
+            _ => String::new(),
         };
         format!(
             "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies{coarse})\
-             \n  preconditioner: {}{lifted}\n",
+             \n  preconditioner: {}\n",
             jump.n_local,
             jump.n_global - jump.n_local,
             natural.projector.name(),
             natural.r,
-            self.preconditioner.kind.name(),
+            self.preconditioner.describe(),
         )
     }
 }

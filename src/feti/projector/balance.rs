@@ -2,8 +2,9 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::coarse_solver::InverseSide;
 use super::column_map::ColumnMap;
-use super::gtg::{Gtg, InverseSide};
+use super::gtg::Gtg;
 use super::kernel_motion::KernelMotion;
 use super::natural::NaturalCoarse;
 use crate::feti::settings::ProjectorKind;

@@ -8,12 +8,15 @@
 use std::cell::Cell;
 use std::ops::Range;
 
+use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::gtg::{direct, InverseSide};
+use super::coarse_solver::{CoarseSolver, CoarseSolves, InverseSide};
+use super::column_map::ColumnMap;
 use super::pattern::BlockPattern;
 use super::refined::probe;
 use super::rows::KernelRows;
+use super::scaled_ksp::direct;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
 use base::linalg::sorted::distinct;
@@ -28,19 +31,6 @@ pub const EXACT: f64 = 1e-13;
 
 /// Largest number of iterations around a solver that is no factorisation.
 const ITERATIONS: i32 = 1000;
-
-/// How GᵀQG is solved, and how often it was.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct CoarseSolves {
-    /// KSP and PC that the user has chosen.
-    pub solver: String,
-    /// Whether FGMRES iterates around them.
-    pub iterated: bool,
-    /// Number of solutions.
-    pub solves: usize,
-    /// Iterations of FGMRES in all of them.
-    pub iterations: usize,
-}
 
 /// The scaled matrix D⁻¹ GᵀQG D⁻¹, D² its diagonal, and its solver.
 pub struct Distributed {
@@ -61,7 +51,7 @@ pub struct Distributed {
     rhs: PetscVec,
     solution: PetscVec,
     /// The relative error of a vector after multiplication with the matrix and its inverse.
-    pub defect: f64,
+    defect: f64,
     solves: Cell<usize>,
     iterations: Cell<usize>,
 }
@@ -173,23 +163,14 @@ impl Distributed {
         Ok(new)
     }
 
-    /// The user's solver.
-    pub fn ksp(&self) -> &Ksp {
-        &self.ksp
-    }
-
-    /// How it solves, and how often it did.
-    pub fn work(&self) -> Result<CoarseSolves> {
-        Ok(CoarseSolves {
-            solver: format!(
-                "{} with {}",
-                self.ksp.type_name()?,
-                self.ksp.pc()?.type_name()?
-            ),
-            iterated: self.around.is_some(),
-            solves: self.solves.get(),
-            iterations: self.iterations.get(),
-        })
+    /// KSP and PC that the user has chosen.
+    fn name(&self) -> Result<String> {
+        let pc = self.ksp.pc()?;
+        Ok(format!(
+            "{} with {}",
+            self.ksp.type_name()?,
+            pc.type_name()?
+        ))
     }
 
     /// Solves for a known vector: the residual relative to the right-hand side, and the error relative to the vector.
@@ -240,18 +221,59 @@ impl Distributed {
         v.iter_mut().zip(&self.scale).for_each(|(v, s)| *v *= s);
         Ok(())
     }
+}
 
-    /// x ← x − along (GᵀQG)⁻¹ fromᵀ x, with the columns in `scratch`. Collective.
-    pub fn remove(
+impl CoarseSolver for Distributed {
+    fn solve(&self, x: &mut [f64], side: InverseSide) -> Result<()> {
+        // Every rank knows all columns here.
+        self.rhs.array_mut()?.copy_from_slice(&x[self.own.clone()]);
+        self.scale(&self.rhs)?;
+        self.apply(side)?;
+        self.scale(&self.solution)?;
+        x.fill(0.0);
+        x[self.own.clone()].copy_from_slice(&self.solution.array()?);
+        sum_all(self.session.comm(), x);
+        Ok(())
+    }
+
+    fn defect(&self) -> Result<f64> {
+        Ok(self.defect)
+    }
+
+    fn describe(&self) -> Result<String> {
+        let around = if self.around.is_some() {
+            "FGMRES around "
+        } else {
+            ""
+        };
+        Ok(format!("G^T Q G by {around}{}", self.name()?))
+    }
+
+    fn ksp(&self) -> Option<&Ksp> {
+        Some(&self.ksp)
+    }
+
+    fn work(&self) -> Result<Option<CoarseSolves>> {
+        Ok(Some(CoarseSolves {
+            solver: self.name()?,
+            iterated: self.around.is_some(),
+            solves: self.solves.get(),
+            iterations: self.iterations.get(),
+        }))
+    }
+
+    /// Columns go to their owners only, and back.
+    fn remove(
         &self,
+        _: (&SimpleCommunicator, &ColumnMap),
         x: &PetscVec,
-        (from, along): (&KernelRows, &KernelRows),
-        scratch: &mut [f64],
+        [from, along]: [&KernelRows; 2],
+        c: &mut [f64],
         side: InverseSide,
     ) -> Result<()> {
-        self.needed.iter().for_each(|&c| scratch[c as usize] = 0.0);
-        from.add_transpose(&x.array()?, scratch);
-        let mut ghosts: Vec<f64> = self.needed.iter().map(|&c| scratch[c as usize]).collect();
+        self.needed.iter().for_each(|&k| c[k as usize] = 0.0);
+        from.add_transpose(&x.array()?, c);
+        let mut ghosts: Vec<f64> = self.needed.iter().map(|&k| c[k as usize]).collect();
         self.halo.sum(&ghosts, &self.rhs)?;
         clock::timed(Phase::Natural, || {
             self.scale(&self.rhs)?;
@@ -260,20 +282,8 @@ impl Distributed {
         })?;
         self.halo.fetch(&self.solution, &mut ghosts)?;
         let of_needed = self.needed.iter().zip(&ghosts);
-        of_needed.for_each(|(&c, v)| scratch[c as usize] = *v);
-        along.add(-1.0, scratch, &mut x.array_mut()?);
-        Ok(())
-    }
-
-    /// x ← (GᵀQG)⁻¹ x or its transpose, the same on every rank. Collective.
-    pub fn solve(&self, x: &mut [f64], side: InverseSide) -> Result<()> {
-        self.rhs.array_mut()?.copy_from_slice(&x[self.own.clone()]);
-        self.scale(&self.rhs)?;
-        self.apply(side)?;
-        self.scale(&self.solution)?;
-        x.fill(0.0);
-        x[self.own.clone()].copy_from_slice(&self.solution.array()?);
-        sum_all(self.session.comm(), x);
+        of_needed.for_each(|(&k, v)| c[k as usize] = *v);
+        along.add(-1.0, c, &mut x.array_mut()?);
         Ok(())
     }
 }

@@ -13,6 +13,7 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::blocks::{positions, ColumnBlocks};
+use super::coarse_solver::InverseSide;
 use super::column_map::ColumnMap;
 use super::columns::KernelColumns;
 use super::distributed::Distributed;
@@ -20,13 +21,13 @@ use super::gram::Gram;
 use super::gram_matrix::GramMatrix;
 use super::gram_pattern::{FactorSharing, GramPattern};
 use super::graph::BodyGraph;
-use super::gtg::{Gtg, InverseSide};
+use super::gtg::Gtg;
 use super::pattern::meeting;
 use super::rounding::rounding_of_rows;
 use super::rows::KernelRows;
 use super::team_factor::TeamFactor;
 use super::weights::{choose, spread};
-use crate::feti::operators::preconditioner::Preconditioner;
+use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
 use crate::substructures::{Problem, Subdomain};
@@ -94,7 +95,7 @@ impl NaturalCoarse {
     pub fn new(
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
         (wanted, varies): (ProjectorKind, f64),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
@@ -197,7 +198,7 @@ impl NaturalCoarse {
         &mut self,
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
     ) -> Result<()> {
         self.weighted(problem, stiffness, preconditioner, 0.0)?;
         let weak = self.projector == ProjectorKind::Preconditioner && !self.is_sound()?;
@@ -217,7 +218,8 @@ impl NaturalCoarse {
 
     /// Whether P is a projection to more digits than an iteration needs.
     fn is_sound(&self) -> Result<bool> {
-        let defect = self.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
+        let gtg = self.gtg.as_ref();
+        let defect = gtg.map_or(Ok(0.0), |gtg| gtg.solver.defect())?;
         Ok(defect <= SOUND)
     }
 
@@ -226,7 +228,7 @@ impl NaturalCoarse {
         &mut self,
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
         rest: f64,
     ) -> Result<()> {
         if self.r == 0 {
@@ -349,7 +351,7 @@ impl NaturalCoarse {
             return Ok(());
         };
         let mut known = self.known.part_of(x);
-        gtg.solve(comm, &mut known, InverseSide::Plain)?;
+        gtg.solver.solve(&mut known, InverseSide::Plain)?;
         x.copy_from_slice(&self.known.whole(comm, &known));
         Ok(())
     }

@@ -6,10 +6,11 @@
 
 use std::rc::Rc;
 
+use super::coarse_solver::{CoarseSolver, InverseSide};
 use super::column_map::ColumnMap;
 use super::gram::{diagonal_of_own_rows, Gram};
 use super::gram_pattern::GramPattern;
-use super::gtg::InverseSide;
+use crate::Result;
 use base::linalg::csr::Csr;
 use cholesky::team::FactorTeam;
 
@@ -47,7 +48,7 @@ impl RefinedFactor {
         shape: &GramPattern,
         [a, transpose]: [Csr; 2],
         plain: &Gram,
-    ) -> Result<RefinedFactor, Csr> {
+    ) -> std::result::Result<RefinedFactor, Csr> {
         let mut symmetric = a.clone();
         let both = symmetric.val.iter_mut().zip(&transpose.val);
         both.for_each(|(s, t)| *s = 0.5 * (*s + t));
@@ -181,6 +182,29 @@ impl RefinedFactor {
             self.factor.solve(&mut rest);
             x.iter_mut().zip(&rest).for_each(|(x, r)| *x += r);
         }
+    }
+}
+
+impl CoarseSolver for RefinedFactor {
+    fn solve(&self, x: &mut [f64], side: InverseSide) -> Result<()> {
+        RefinedFactor::solve(self, x, side);
+        Ok(())
+    }
+
+    fn defect(&self) -> Result<f64> {
+        Ok(self.defect)
+    }
+
+    fn describe(&self) -> Result<String> {
+        Ok("G^T Q G by a sparse Cholesky factor".into())
+    }
+
+    fn loses_less(&self, _: f64, defect: f64) -> bool {
+        self.plain().is_some() && self.defect <= defect
+    }
+
+    fn shared(&self) -> Option<&Gram> {
+        self.plain()
     }
 }
 

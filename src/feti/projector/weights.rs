@@ -7,9 +7,9 @@ use super::natural::NaturalCoarse;
 use super::rows::KernelRows;
 use super::sweep;
 use crate::feti::cost::variation::JUMPS;
-use crate::feti::operators::preconditioner::Preconditioner;
+use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::settings::{PcType, ProjectorKind};
+use crate::feti::settings::ProjectorKind;
 use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::{any, sum_all};
@@ -23,25 +23,26 @@ pub(super) const APART: f64 = 1e7;
 /// its diagonal where rows `switch` between many bodies that slide on each other. It is called only if some body
 /// floats.
 pub(super) fn choose(
-    preconditioner: &Preconditioner,
+    preconditioner: &dyn DualPreconditioner,
     wanted: ProjectorKind,
     (spread, varies): (f64, f64),
     switch: bool,
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
-        return match (wanted, preconditioner.kind) {
-            // Without a preconditioner Q = M⁻¹ is the identity.
-            (ProjectorKind::Preconditioner, PcType::None) => ProjectorKind::Identity,
-            _ => wanted,
+        // Without a preconditioner Q = M⁻¹ is the identity.
+        let identity = wanted == ProjectorKind::Preconditioner && preconditioner.is_identity();
+        return if identity {
+            ProjectorKind::Identity
+        } else {
+            wanted
         };
     }
     // Corners and mesh sizes alone cause a factor of two.
     let differ = spread > 3.0 || varies > JUMPS;
-    match (differ, preconditioner.kind) {
+    match (differ, switch || preconditioner.is_identity()) {
         (false, _) => ProjectorKind::Identity,
-        (true, PcType::None) => ProjectorKind::Diagonal,
-        (true, _) if switch => ProjectorKind::Diagonal,
-        (true, _) => ProjectorKind::Preconditioner,
+        (true, true) => ProjectorKind::Diagonal,
+        (true, false) => ProjectorKind::Preconditioner,
     }
 }
 
@@ -128,7 +129,7 @@ impl NaturalCoarse {
         &self,
         problem: &Problem,
         stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
+        preconditioner: &dyn DualPreconditioner,
         rigid: &[f64],
     ) -> Result<KernelRows> {
         let n = stiffness.jump.n_owned;

@@ -12,7 +12,7 @@ use super::scaled::ScaledSubdomain;
 use super::which::OperatorForm;
 use crate::feti::cost::forms::{self, SubdomainKind};
 use crate::feti::jump::operator::Jump;
-use crate::feti::settings::{Adaptive, MethodSettings, PcType, Scaling};
+use crate::feti::settings::{Adaptive, MethodSettings, Scaling};
 use crate::feti::subdomain::equal;
 use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
@@ -29,17 +29,18 @@ pub(crate) struct Factored {
     pub analysed: Vec<Option<Arc<Analysed>>>,
 }
 
-/// Factors one subdomain of each kind. `kept` has what of them is known already; it may be empty.
+/// Factors one subdomain of each kind. `needs_s`: whether the preconditioner uses S before the iteration begins. `kept`
+/// has what of them is known already; it may be empty.
 pub(crate) fn factor(
     session: &Session,
     problem: &Problem,
     jump: &Jump,
     team: &Team,
-    (settings, kind): (&MethodSettings, PcType),
+    (settings, needs_s): (&MethodSettings, bool),
     kept: &[Still],
 ) -> Result<Factored> {
     // A matrix S is needed by every user that multiplies with it or reads its entries before the iteration begins.
-    let wants_s = kind == PcType::CoarseCorrected
+    let wants_s = needs_s
         || settings.scaling == Some(Scaling::Deluxe)
         || matches!(settings.adaptive, Adaptive::Below(_));
     let first = equal::representatives(problem, jump, team);

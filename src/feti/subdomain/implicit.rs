@@ -13,11 +13,14 @@
 //! application reads both factors twice. This pays in space, where S is nearly as large as a factor and takes many
 //! times as long to compute.
 
+use std::sync::{Arc, OnceLock};
+
 use super::basis::Basis;
 use super::which::Operator;
 use base::linalg::csr::Csr;
 use base::linalg::dense::{self, Dense, Scratch};
 use cholesky::interior::{Analysed, Analysis};
+use cholesky::lanes::LANES;
 use cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use cholesky::symbolic::Symbolic;
 
@@ -44,6 +47,8 @@ pub struct Implicit {
     x: Dense,
     /// M = L Lᵀ.
     m: Dense,
+    /// S and T as dense matrices, filled at the first request.
+    whole: [OnceLock<Arc<Dense>>; 2],
 }
 
 /// Ψ on Δ and Σ, which come from the same factors.
@@ -111,6 +116,7 @@ impl Implicit {
             held,
             x: Dense::zeros(n_delta, 0),
             m: Dense::default(),
+            whole: Default::default(),
         };
         let q = basis.vectors(interface.len());
         let q: Vec<&[f64]> = q.iter().map(|q| &q[..n_delta]).collect();
@@ -211,6 +217,40 @@ impl Implicit {
         }
     }
 
+    /// The first `n` columns of y ← A v, several right-hand sides at once.
+    pub fn apply_columns(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
+        for first in (0..n).step_by(LANES) {
+            let last = n.min(first + LANES);
+            let lanes: Vec<&[f64]> = (first..last).map(|c| v.col(c)).collect();
+            let done = self.apply(which, &lanes);
+            for (c, done) in (first..last).zip(&done) {
+                y.col_mut(c).copy_from_slice(done);
+            }
+        }
+    }
+
+    /// One of the operators as a dense matrix, built column by column once, for checks and other rare uses.
+    pub fn whole(&self, which: Operator) -> &Arc<Dense> {
+        let (known, n) = match which {
+            Operator::S => (&self.whole[0], self.interface.len()),
+            Operator::T => (&self.whole[1], self.n_delta),
+        };
+        known.get_or_init(|| {
+            let mut unit = Dense::zeros(n, n);
+            (0..n).for_each(|i| unit.set(i, i, 1.0));
+            let mut out = Dense::zeros(n, n);
+            self.apply_columns(which, &unit, &mut out, n);
+            // Both triangles are filled: callers may read either one.
+            out.mirror_lower();
+            Arc::new(out)
+        })
+    }
+
+    /// S as a dense matrix, if it has been asked for.
+    pub fn known_s(&self) -> Option<&Dense> {
+        self.whole[0].get().map(|s| &**s)
+    }
+
     /// T w for each of `w` (length n_Δ or more, of which the first n_Δ entries count).
     fn t(&self, w: &[&[f64]]) -> Vec<Vec<f64>> {
         let loads = w.iter().map(|w| self.on_delta(&w[..self.n_delta]));
@@ -293,7 +333,9 @@ impl Implicit {
             + self.held.bytes()
             + self.coupling.bytes()
             + self.k_gamma.bytes();
-        (sparse, 8 * (self.x.data.len() + self.m.data.len()))
+        let whole = self.whole.iter().filter_map(OnceLock::get);
+        let whole: usize = whole.map(|a| a.data.len()).sum();
+        (sparse, 8 * (self.x.data.len() + self.m.data.len() + whole))
     }
 }
 

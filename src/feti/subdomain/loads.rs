@@ -1,31 +1,13 @@
 //! Condensation of loads to the interface, and back substitution from interface values.
 
-use super::problem::{Inside, LocalProblem};
+use super::problem::LocalProblem;
 
 impl LocalProblem {
     /// Condenses loads, at most [`LANES`](cholesky::lanes::LANES). Returns (work, g) for each with g = f_Γ −
     /// K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
     /// [`ScaledSubdomain::recover_many`](super::scaled::ScaledSubdomain::recover_many).
     pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
-        let factor = match &self.inside {
-            Inside::Partial(factor) => factor,
-            Inside::Implicit(implicit) => return implicit.condense(loads),
-        };
-        let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
-        match &mut work[..] {
-            [one] => factor.forward(one),
-            several => factor.forward_many(several),
-        }
-        let with_gamma = |w: Vec<f64>| {
-            let g = self
-                .gamma
-                .interface
-                .iter()
-                .map(|&i| w[i as usize])
-                .collect();
-            (w, g)
-        };
-        work.into_iter().map(with_gamma).collect()
+        self.operators.condense(&self.gamma.interface, loads)
     }
 
     /// Solutions on all dofs for at most [`LANES`](cholesky::lanes::LANES) parts, each with `work` of
@@ -43,11 +25,7 @@ impl LocalProblem {
             x
         };
         let mut x: Vec<Vec<f64>> = parts.iter().zip(scales).map(placed).collect();
-        match (&self.inside, &mut x[..]) {
-            (Inside::Partial(factor), [one]) => factor.backward(one),
-            (Inside::Partial(factor), several) => factor.backward_many(several),
-            (Inside::Implicit(implicit), several) => implicit.recover(several),
-        }
+        self.operators.recover(&mut x);
         x
     }
 }

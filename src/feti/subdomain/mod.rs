@@ -11,5 +11,6 @@ pub mod operators;
 pub mod problem;
 pub mod retained;
 pub mod scaled;
+mod schur;
 pub mod turn;
 pub mod which;

@@ -22,16 +22,17 @@
 mod tests;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::basis::Basis;
+use super::condense::condense_dual;
 use super::implicit::Implicit;
+use super::schur::SchurOperators;
 use super::turn::Turn;
 use super::which::OperatorForm;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
-use base::linalg::symmetric::Symmetric;
-use cholesky::interior::{Condenser, InteriorFactor, NoFactor};
+use cholesky::interior::{Condenser, NoFactor};
 use cholesky::symbolic::Keep;
 
 /// Largest number of free motions that are searched in a subdomain that touches nothing: twice the rigid motions of a
@@ -70,31 +71,10 @@ pub struct LocalProblem {
     pub(crate) gamma: Gamma,
     /// Σ, n_Π × n_Π.
     pub(crate) sigma: Dense,
-    /// S on Γ, n_Γ × n_Γ, both triangles. With sparse solves it is filled at the first request.
-    pub(crate) s: OnceLock<Arc<Dense>>,
-    /// T, n_Δ × n_Δ, both triangles, filled as S is.
-    pub(crate) t: OnceLock<Dense>,
-    /// The lower triangles of S and T, in place of the dense matrices: see [`pack`](Self::pack).
-    pub(crate) packed: Option<Packed>,
+    /// S, T and what eliminates the interior.
+    pub(crate) operators: SchurOperators,
     /// The diagonal of K on Γ.
     pub(crate) stiff: Vec<f64>,
-    pub(crate) inside: Inside,
-}
-
-/// The lower triangles of S and T.
-#[derive(Debug)]
-pub(crate) struct Packed {
-    /// Shared with subdomains that have the same S and other primal dofs.
-    pub s: Arc<Symmetric>,
-    pub t: Symmetric,
-}
-
-/// The factors that eliminate the interior.
-#[derive(Debug)]
-pub(crate) enum Inside {
-    /// The factor that S came from.
-    Partial(Arc<InteriorFactor>),
-    Implicit(Box<Implicit>),
 }
 
 impl Gamma {
@@ -181,10 +161,7 @@ impl LocalProblem {
                         turn: None,
                     },
                     sigma: coarse.sigma,
-                    s: OnceLock::new(),
-                    t: OnceLock::new(),
-                    packed: None,
-                    inside: Inside::Implicit(Box::new(implicit)),
+                    operators: SchurOperators::sparse(implicit),
                 });
             }
         }
@@ -202,22 +179,20 @@ impl LocalProblem {
                 Err(e) => return Err(e.into()),
             }
         };
-        let mut out = LocalProblem {
-            stiff: diagonal(k, &interface),
-            gamma: Gamma {
-                interface,
-                n_delta: delta.len(),
-                basis,
-                ..Gamma::default()
-            },
-            sigma: Dense::default(),
-            s: OnceLock::from(Arc::new(s)),
-            t: OnceLock::new(),
-            packed: None,
-            inside: Inside::Partial(Arc::new(factor)),
+        let stiff = diagonal(k, &interface);
+        let mut gamma = Gamma {
+            interface,
+            n_delta: delta.len(),
+            basis,
+            ..Gamma::default()
         };
-        out.condense_dual()?;
-        Ok(out)
+        let (t, sigma) = condense_dual(&mut gamma, &s, &stiff)?;
+        Ok(LocalProblem {
+            gamma,
+            sigma,
+            operators: SchurOperators::whole(Arc::new(factor), Arc::new(s), t),
+            stiff,
+        })
     }
 
     /// This subdomain with more primal functionals, Σ weights · u over dual dofs each. `k` is the very matrix that this
@@ -230,38 +205,34 @@ impl LocalProblem {
         functionals: impl Iterator<Item = (&'a [u32], &'a [f64])>,
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, NoFactor> {
-        let (s, factor) = match &self.inside {
-            Inside::Partial(factor) => (self.s(), factor.clone()),
-            Inside::Implicit(_) => {
+        let (factor, s) = match self.operators.factor() {
+            Some(factor) => (factor.clone(), self.s()),
+            None => {
                 let condenser = Condenser::alone(Keep::Interior);
                 let (factor, s) = condenser.condense(k, &self.gamma.interface, coordinates)?;
-                (Arc::new(s), Arc::new(factor))
+                (Arc::new(factor), Arc::new(s))
             }
         };
-        let mut out = LocalProblem {
-            gamma: Gamma {
-                interface: self.gamma.interface.clone(),
-                n_delta: self.gamma.n_delta,
-                basis: self.gamma.basis.clone(),
-                ..Gamma::default()
-            },
-            sigma: Dense::default(),
-            s: OnceLock::from(s),
-            t: OnceLock::new(),
-            packed: None,
-            stiff: self.stiff.clone(),
-            inside: Inside::Partial(factor),
+        let mut gamma = Gamma {
+            interface: self.gamma.interface.clone(),
+            n_delta: self.gamma.n_delta,
+            basis: self.gamma.basis.clone(),
+            ..Gamma::default()
         };
-        let delta = positions(&self.gamma.interface[..self.gamma.n_delta]);
+        let delta = positions(&gamma.interface[..gamma.n_delta]);
         for (dofs, weights) in functionals {
-            let new = out.gamma.basis.push(delta.of(dofs), weights);
+            let new = gamma.basis.push(delta.of(dofs), weights);
             debug_assert!(new, "functionals are independent");
         }
-        out.condense_dual()?;
-        if let Some(packed) = &self.packed {
-            out.pack_beside(packed.s.clone());
-        }
-        Ok(out)
+        let (t, sigma) = condense_dual(&mut gamma, &s, &self.stiff)?;
+        let mut operators = SchurOperators::whole(factor, s, t);
+        operators.pack_like(&self.operators);
+        Ok(LocalProblem {
+            gamma,
+            sigma,
+            operators,
+            stiff: self.stiff.clone(),
+        })
     }
 
     /// A stiffness of each primal dof that is positive even where Σ vanishes: the energy of moving its dofs alone.
@@ -281,16 +252,9 @@ impl LocalProblem {
 
     /// Bytes of the factor and of the dense operators: (sparse, dense).
     pub fn bytes(&self) -> (usize, usize) {
-        let (sparse, more) = match &self.inside {
-            Inside::Partial(factor) => (factor.bytes(), 0),
-            Inside::Implicit(implicit) => implicit.bytes(),
-        };
-        let s = self.s.get().map_or(0, |s| s.data.len());
-        let t = self.t.get().map_or(0, |t| t.data.len());
-        let dense = s + t + self.gamma.psi.data.len() + self.sigma.data.len();
-        let packed = self.packed.as_ref();
-        let packed = packed.map_or(0, |p| p.s.bytes() + p.t.bytes());
-        (sparse, more + packed + dense * std::mem::size_of::<f64>())
+        let (sparse, dense) = self.operators.bytes();
+        let coarse = self.gamma.psi.data.len() + self.sigma.data.len();
+        (sparse, dense + coarse * std::mem::size_of::<f64>())
     }
 }
 

@@ -5,10 +5,10 @@ use std::rc::Rc;
 
 use super::*;
 use crate::feti::projector::blocks::ColumnBlocks;
+use crate::feti::projector::coarse_solver::InverseSide;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::gram_matrix::GramMatrix;
 use crate::feti::projector::gram_pattern::{FactorSharing, GramPattern};
-use crate::feti::projector::gtg::InverseSide;
 use crate::feti::projector::pattern::meeting;
 use crate::feti::projector::refined::RefinedFactor;
 use crate::feti::projector::rows::KernelRows;

@@ -27,7 +27,10 @@ fn rows() -> KernelRows {
 }
 
 /// GᵀDG with weights over four orders, and with every entry above the diagonal wrong by the part `skew`.
-fn with_matrix(skew: f64, test: impl Fn(Result<RefinedFactor, Csr>, &Csr) + Send + Sync + 'static) {
+fn with_matrix(
+    skew: f64,
+    test: impl Fn(std::result::Result<RefinedFactor, Csr>, &Csr) + Send + Sync + 'static,
+) {
     with_session(move |session| {
         let comm = session.comm();
         let g = rows();

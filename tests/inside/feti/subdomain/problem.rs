@@ -120,7 +120,13 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
     close(&dense.gamma.psi.data, &sparse.gamma.psi.data);
     close(&dense.sigma.data, &sparse.sigma.data);
     close(&dense.s().data, &sparse.s().data);
-    close(&dense.whole_t().data, &sparse.whole_t().data);
+    let t = |local: &LocalProblem| {
+        let n = local.gamma.n_delta;
+        let all = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+        let entries = all.map(|(i, j)| local.entry(Operator::T, i, j));
+        entries.collect::<Vec<_>>()
+    };
+    close(&t(&dense), &t(&sparse));
     // More columns than are processed side by side, and a load.
     let v = Dense {
         rows: dense.gamma.n_gamma(),

@@ -187,7 +187,7 @@ fn work(session: &Session, solver: &FetiFeti) -> Work {
         own.primal += n;
         own.primal_factor += n * (n + 1.0).log2();
     }
-    if let Some(lifting) = &dual.preconditioner.lifting {
+    if let Some(lifting) = dual.preconditioner.lifting() {
         own.ghosts += 2.0 * space.ghosts.len() as f64;
         own.lifting_products += lifting.products;
         let bodies = space.owned.len().max(1) as f64;
