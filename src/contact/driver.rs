@@ -1,14 +1,14 @@
 //! The contact loop on one page: propose, solve, judge, step, certify, doubt.
 //!
-//! A [`Strategy`](strategy::Strategy) proposes steps. The driver lets it make them, counts, observes, times and stops. The certificate has
-//! the last word: rows that it finds on the wrong side send the loop on.
+//! A [`Strategy`](super::strategy::Strategy) proposes steps. The driver lets it make them, counts, observes, times and
+//! stops. The certificate has the last word: rows that it finds on the wrong side send the loop on.
 
 use std::time::Instant;
 
 use super::settings::{ContactSettings, ContactType};
 use super::state::{Observer, State, Step};
-use super::strategy::{self, Checkpoint, Proposal};
-use super::{certified_signs, farkas, feasible};
+use super::strategy::{Checkpoint, Proposal};
+use super::{certified_signs, farkas, feasible, strategies};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
@@ -84,7 +84,7 @@ fn follow(
 ) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
     let mut steps: Vec<Step> = Vec::new();
-    let mut strategy = strategy::begin(kind, method, settings, start)?;
+    let mut strategy = strategies::begin(kind, method, settings, start)?;
     let mut asked = strategy.asks_first();
     if asked {
         doubt(method, &strategy.state().lambda)?;
@@ -99,7 +99,7 @@ fn follow(
             let state = strategy.state().clone();
             drop(strategy);
             let kind = ContactType::AugmentedLagrangian;
-            strategy = strategy::begin(kind, method, settings, Some(state))?;
+            strategy = strategies::begin(kind, method, settings, Some(state))?;
             (before, asked) = (steps.len(), false);
         }
         let (step, proposal) = strategy.step()?;
@@ -121,7 +121,7 @@ fn follow(
 }
 
 /// Asks whether there is a solution: returns an error that names bodies which the load pushes away for ever. Few rigid
-/// motions are asked about before the loop, many only here, from the λ where the loop is: where the loop has failed or does
+/// motions are asked about before the loop, many only here, from the λ where the loop is: where it has failed or does
 /// not end, and before a strategy that would go on for ever. Collective.
 fn doubt(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
     let dual = method.dual();

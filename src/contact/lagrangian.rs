@@ -52,7 +52,7 @@ const FINER: f64 = 0.1;
 /// short waves of multipliers need more digits for their signs than displacements.
 const MOST_DIGITS: f64 = 1e-4;
 
-/// What the next step is.
+/// The next step.
 enum NextStep<'a> {
     /// A Newton step of the minimisation that goes on.
     Newton,
@@ -60,7 +60,7 @@ enum NextStep<'a> {
     Minimised { minimal: bool, tried: bool },
     /// A step of a trial.
     Trial(Box<Trial<'a>>),
-    /// What follows a trial that has failed.
+    /// The one after a trial that has failed.
     Failed(AfterTrial),
 }
 
@@ -77,7 +77,7 @@ impl NextStep<'_> {
     }
 }
 
-/// What follows a trial that fails.
+/// The way on after a trial that fails.
 #[derive(Debug, Clone, Copy)]
 enum AfterTrial {
     /// The minimisation goes on, or has ended `early`.

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! The loop (`driver`) calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are
-//! factored once. There are three strategies (`strategy`): a primal-dual active set (`active_set`); damped Newton steps
-//! on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE with MPRGP
-//! (`smalbe`). A check before the loop finds out whether a solution exists (`feasible`).
+//! factored once. There are three strategies (`strategies`): a primal-dual active set (`active_set`); damped Newton
+//! steps on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE
+//! with MPRGP (`smalbe`). A check before the loop finds out whether a solution exists (`feasible`).
 
 mod active_set;
 mod anchored;
@@ -34,6 +34,7 @@ mod semismooth_newton;
 mod settings;
 mod smalbe;
 mod state;
+mod strategies;
 mod strategy;
 mod unilateral_springs;
 

@@ -99,7 +99,7 @@ fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(u
     let early = solve(1, scene, 1, &[&kind[..], &limit].concat());
     assert_eq!(early["converged_reason"], "DIVERGED_CONTACT_ITS");
     let (whole, found) = (checkpoint(&whole), checkpoint(&part));
-    assert_eq!(found.state.all.steps.to_string(), cut);
+    assert_eq!(found.stepper.contact.all.steps.to_string(), cut);
     assert_eq!(found.scene, whole.scene);
     let end = scratch.path("end");
     for &(ranks, method) in resume {
@@ -118,12 +118,15 @@ fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(u
             assert_eq!(warm["contact"][key], cold["contact"][key], "{what}: {key}");
         }
         let end = checkpoint(&end);
-        assert_eq!(end.state.all.active, whole.state.all.active, "{what}");
-        let own = end.state.all.steps - found.state.all.steps;
-        assert!(own < whole.state.all.steps, "{what}: {own} steps");
+        assert_eq!(
+            end.stepper.contact.all.active, whole.stepper.contact.all.active,
+            "{what}"
+        );
+        let own = end.stepper.contact.all.steps - found.stepper.contact.all.steps;
+        assert!(own < whole.stepper.contact.all.steps, "{what}: {own} steps");
         // The report covers both parts of the run.
         let steps = warm["contact"]["steps"].as_array().expect("a list");
-        assert_eq!(steps.len(), end.state.all.steps, "{what}");
+        assert_eq!(steps.len(), end.stepper.contact.all.steps, "{what}");
         assert_eq!(warm["outer_iterations"], steps.len(), "{what}");
         assert!(count(&warm) > count(&early), "{what}");
     }
@@ -215,7 +218,7 @@ fn a_solved_run_is_confirmed_on_any_ranks() {
         let first = energy.get_or_insert(report["energy"].clone());
         assert!(near(&report["energy"], first));
         let (one, other) = (checkpoint(&path(1)), checkpoint(&file));
-        let (a, b) = (&one.state, &other.state);
+        let (a, b) = (&one.stepper.contact, &other.stepper.contact);
         assert_eq!((one.scene, &one.title), (other.scene, &other.title));
         assert_eq!((&a.local, &a.blocks), (&b.local, &b.blocks));
         let (a, b) = (&a.all, &b.all);
@@ -228,10 +231,10 @@ fn a_solved_run_is_confirmed_on_any_ranks() {
     }
     for (ranks, file) in [(1, path(4)), (2, path(1)), (4, path(3)), (3, path(4))] {
         // The same file may be read and written.
-        let before = checkpoint(&file).state;
+        let before = checkpoint(&file).stepper.contact;
         let files = ["--resume", &file, "--checkpoint", &file];
         let report = solve(ranks, &scene, 0, &files);
-        let after = checkpoint(&file).state;
+        let after = checkpoint(&file).stepper.contact;
         assert_eq!(after.all.steps, before.all.steps + 1);
         assert_eq!(after.all.active, before.all.active);
         let last = &report["contact"]["steps"].as_array().expect("a list")[before.all.steps];
@@ -275,8 +278,8 @@ fn load_steps_go_on() {
         &[&options[..], &["-fetifeti_contact_max_it", &limit]].concat(),
     );
     let found = checkpoint(&file);
-    assert_eq!(found.load_step, cut - 1);
-    assert_eq!(found.state.all.steps, most - 1);
+    assert_eq!(found.stepper.load_step, cut - 1);
+    assert_eq!(found.stepper.contact.all.steps, most - 1);
     for ranks in [2, 1] {
         let warm = solve(
             ranks,
@@ -299,7 +302,7 @@ fn load_steps_go_on() {
         let series = fs::read_to_string(format!("{dir}/solution.pvd")).expect("the series");
         assert_eq!(series.matches("<DataSet").count(), n, "{series}");
     }
-    assert_eq!(checkpoint(&file).load_step, n - 1);
+    assert_eq!(checkpoint(&file).stepper.load_step, n - 1);
 }
 
 /// Whenever the run is interrupted, the file is a checkpoint of a finished step.
@@ -320,7 +323,7 @@ fn a_run_that_is_killed_leaves_a_whole_file() {
     let _ = child.kill();
     child.wait().expect("it ends");
     let found = checkpoint(&file);
-    assert!(found.state.all.steps > 0 || found.load_step > 0);
+    assert!(found.stepper.contact.all.steps > 0 || found.stepper.load_step > 0);
     let cold = solve(1, PRESS, 0, &["-fetifeti_ksp_rtol", "1e-10"]);
     let warm = solve(
         1,

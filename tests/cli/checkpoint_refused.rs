@@ -51,7 +51,7 @@ fn bad_files_are_refused_and_stay() {
     );
     let mut older = good.clone();
     older[20..24].copy_from_slice(&1u32.to_le_bytes());
-    resume(&older, &["format 1", "format 4"]);
+    resume(&older, &["format 1", "format 5"]);
     let foreign = fs::read(MODEL).expect("the scene");
     resume(&foreign, &["no checkpoint"]);
     assert_eq!(scratch.files().len(), 2, "{:?}", scratch.files());
@@ -150,6 +150,6 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
         1,
         &["--checkpoint", &file, "-fetifeti_contact_max_it", "1"],
     );
-    assert_eq!(checkpoint(&file).state.all.steps, 1);
+    assert_eq!(checkpoint(&file).stepper.contact.all.steps, 1);
     assert_eq!(scratch.files().len(), 1, "{:?}", scratch.files());
 }

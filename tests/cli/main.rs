@@ -21,5 +21,6 @@ mod report;
 mod single;
 mod sliding;
 mod solve;
+mod stepper;
 mod table;
 mod unusual;

@@ -58,7 +58,7 @@ pub(super) fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
 
 /// A block of `n` elements across, at `x` on a layer of 24 elements, that is pushed by `push` in 5 steps. The layer is
 /// as soft as the block, or a million times stiffer.
-fn blocks(x: f64, push: f64, n: usize, stiff: bool, steps: &str) -> String {
+pub(super) fn blocks(x: f64, push: f64, n: usize, stiff: bool, steps: &str) -> String {
     let young = if stiff { 1e8 } else { 1e3 };
     format!(
         "title = \"blocks\"\nphysics = \"elasticity\"\n[[body]]\nname = \"low\"\nsize = [6, 1]\nelements = [24, 4]\n\
@@ -71,7 +71,7 @@ fn blocks(x: f64, push: f64, n: usize, stiff: bool, steps: &str) -> String {
     )
 }
 
-const UPDATE: &str = "[steps]\ncount = 5\ndirichlet = \"t\"\nupdate = true\n";
+pub(super) const UPDATE: &str = "[steps]\ncount = 5\ndirichlet = \"t\"\nupdate = true\n";
 
 #[test]
 fn a_block_keeps_its_uniform_pressure_wherever_it_is_pushed() {
@@ -296,7 +296,7 @@ fn an_interrupted_run_goes_on_with_the_contacts_of_its_step() {
         .args(tight)
         .spawn()
         .expect("the program starts");
-    let at = || read(Path::new(&file)).map_or(0, |c| c.load_step);
+    let at = || read(Path::new(&file)).map_or(0, |c| c.stepper.load_step);
     while at() < 2 && child.try_wait().expect("it can be asked").is_none() {
         std::thread::yield_now();
     }
@@ -319,7 +319,13 @@ fn an_interrupted_run_goes_on_with_the_contacts_of_its_step() {
             near("energy", *a, *b, 1e-5);
         }
         near("depth", probe(&resumed, 0)[1], probe(&whole, 0)[1], 1e-7);
-        assert_eq!(read(Path::new(&end)).expect("a checkpoint").load_step, 4);
+        assert_eq!(
+            read(Path::new(&end))
+                .expect("a checkpoint")
+                .stepper
+                .load_step,
+            4
+        );
     }
 }
 

@@ -96,9 +96,9 @@ impl Run {
         let state = read(Path::new(&self.scratch.path("state"))).expect("a checkpoint");
         // Killed between the two, it may have one of them only.
         assert!(
-            state.load_step.abs_diff(steps) <= 1,
+            state.stepper.load_step.abs_diff(steps) <= 1,
             "{} {steps}",
-            state.load_step
+            state.stepper.load_step
         );
     }
 }

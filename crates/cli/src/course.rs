@@ -6,13 +6,11 @@ use super::early::Early;
 use super::events::Events;
 use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
-use super::renewed::Renewed;
 use super::{balance, contact};
-use crate::checkpoint::{Checkpoints, Resumed};
+use crate::checkpoint::Checkpoints;
 use base::Result;
 use fetifeti::solution::SolvedRow;
-use fetifeti::{FetiFeti, Solution, Status};
-use parallel::exchange::total;
+use fetifeti::{Solution, Status};
 use petsc::signals::{self, Heeded};
 use petsc::Session;
 use report::destination::Destination;
@@ -20,8 +18,8 @@ use report::json::certified::Certified;
 use report::json::contact::{BodyBalance, LoadStep, OuterStep};
 use report::paraview::pvd::Pvd;
 use report::progress::ProgressLine;
-use scene::sliding::{self, Sliding};
-use scene::{distribution, Displaced, Scene, Stepping};
+use scene::sliding::Sliding;
+use scene::Stepper;
 
 /// The results over the load steps.
 pub(super) struct Course {
@@ -41,8 +39,6 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
-    /// The scene with the contacts of this solution, where load steps renew them.
-    pub scene: Option<Scene>,
     /// The forces on every body in balance, on rank 0.
     pub balances: Vec<BodyBalance>,
     /// A warning about the bodies that are not in balance, on rank 0.
@@ -55,122 +51,80 @@ pub(super) struct Course {
 
 /// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
 /// is one. Collective.
-pub(super) fn follow(
+pub(super) fn follow<'a>(
     session: &Session,
-    scene: &Scene,
-    solver: &mut FetiFeti,
+    stepper: Stepper<'a>,
     destination: &Destination,
     place: GatherTarget,
-    (checkpoints, events): (Checkpoints, &Events),
-) -> Result<Course> {
-    let n = scene.n_steps();
-    let times = scene.steps.as_ref().map(|s| s.times.clone());
-    let owns = distribution::owner(session, scene)?;
+    (mut checkpoints, events): (Checkpoints, &Events),
+) -> Result<(Stepper<'a>, Course)> {
     let mut progress = ProgressLine::new(session.rank() == 0 && !destination.quiet);
     let mut course: Option<Course> = None;
     let mut pvd = destination
         .out
         .as_ref()
         .map(|dir| Pvd::new(dir.join("solution.pvd")));
-    let mut renewed = Renewed::new(scene);
-    if let Some((step, left)) = checkpoints.left() {
-        let made = renewed.resume(session, &owns, solver, (step, left));
-        made.map_err(|e| renewed.at_step(step, e))?;
-    }
-    let mut checkpoints = checkpoints.attach(session, solver)?;
-    let Resumed {
-        load_step: first,
-        mut records,
-        mut state,
-    } = checkpoints.resume(session)?;
+    let (mut stepper, mut records) = checkpoints.resume(session, stepper)?;
+    let n = stepper.scene().n_steps();
+    let times = stepper.scene().steps.as_ref().map(|s| s.times.clone());
+    let first = stepper.next_step().unwrap_or(n);
     if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
         session.agree(list_before(session, dir, &times[..first], place, pvd))?;
     }
     let (mut seconds, mut strained) = ([0.0; 2], 0.0);
-    // With a single load step the substructures have its loads already.
-    let many = (n > 1).then(|| {
-        let mine = solver.problem().local.iter().map(|s| s.index);
-        session.agree(Stepping::new(scene, mine))
-    });
-    let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
-    let mut early = Early::new(session, scene, solver)?;
+    let mut early = Early::new(session, stepper.scene(), stepper.solver())?;
     // From here on there are results to keep; before, a signal ends the program at once.
     let _signals = Heeded::watch();
-    for step in first..n {
+    while let Some(step) = stepper.next_step() {
         if n > 1 {
             progress.load_step(step, n);
         }
-        let set_up = match &course {
-            Some(last) => renewed
-                .renew(session, &owns, solver, last, step)
-                .map_err(|e| renewed.at_step(step, e))?,
-            None => None,
-        };
-        if let Some((start, _)) = &set_up {
-            state.clone_from(start);
-            checkpoints.renewed(solver, renewed.start());
-            if let Some(state) = &state {
-                checkpoints.save(session, step, || records.clone(), state)?;
-            }
-        }
-        let scene = renewed.scene();
-        if let Some(stepping) = &mut stepping {
-            let loads = session.agree(stepping.loads(step))?;
-            solver.set_loads(loads, &scene.gaps(&owns, step)?);
+        stepper.begin()?;
+        let checkpointer = checkpoints.checkpointer(&stepper);
+        if step > first && checkpointer.is_some() {
+            let state = stepper.checkpoint()?;
+            checkpoints.save(session, state, || records.clone())?;
         }
         let load_step = if times.is_some() { step + 1 } else { 0 };
         let mut outer = records.take(load_step);
-        let solved = early.solve(solver, scene, step, state.as_ref(), &mut |done, state| {
-            outer.push(contact::outer_step(load_step, outer.len() + 1, done));
-            progress.step(outer.len(), done.active);
-            progress.residual(done.residual, done.tolerance, done.iterations);
-            if let Some(last) = outer.last() {
-                events.step(session, last)?;
-            }
-            checkpoints.save(session, step, || records.followed_by(&outer), state)?;
-            signals::heed(session)
+        let solved = stepper.solve_by(|solver, scene, start| {
+            early.solve(solver, scene, step, start, &mut |done, state| {
+                outer.push(contact::outer_step(load_step, outer.len() + 1, done));
+                progress.step(outer.len(), done.active);
+                progress.residual(done.residual, done.tolerance, done.iterations);
+                if let Some(last) = outer.last() {
+                    events.step(session, last)?;
+                }
+                let state = checkpointer.as_ref().and_then(|c| c.checkpoint(state));
+                checkpoints.save(session, state, || records.followed_by(&outer))?;
+                signals::heed(session)
+            })
         });
-        let mut solution = solved.map_err(|e| {
+        let solved = solved.map_err(|e| {
             if signals::is_end(&e) {
                 checkpoints.ended(e, (step, n), outer.len())
             } else {
-                renewed.at_step(step, e)
+                e
             }
         })?;
+        let Some(mut solved) = solved else { break };
         progress.finish();
-        let mine = solver.problem().local.iter().map(|s| s.index);
-        let given = session.agree(scene.given_energy(mine, step))?;
-        let given = total(session.comm(), given);
-        let balances = balance::bodies(session, scene, solver, &solution, (step, &mut strained))?;
+        let (scene, solver) = (stepper.scene(), stepper.solver());
+        let solution = &mut solved.solution;
+        let balances = balance::bodies(session, scene, solver, solution, (step, &mut strained))?;
         let (fails, unbalanced) = balance::out_of_balance(session, &balances);
         if fails && solution.converged() {
             solution.status = Status::Balance;
         }
-        let rows = contact::rows(session, &solution);
-        let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
-        let (local, u, own) = (&solver.problem().local, &solution.u, solution.rows());
-        let moved = match (scene.is_renewed(), slides) {
-            (true, _) => {
-                let all = Displaced::gather(session, scene, local, u, step);
-                Some(renewed.since(all))
-            }
-            (false, true) => {
-                let bodies = sliding::bodies_of(own);
-                Some(Displaced::near(session, scene, local, u, step, &bodies))
-            }
-            (false, false) => None,
-        };
-        let scene = renewed.scene();
-        let slides = moved.filter(|_| slides);
-        let slides = slides.map(|u| sliding::slid(session, scene, own, &u, step));
+        let rows = contact::rows(session, solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
-        let certified = early.record(session, scene, &solution, step);
+        let certified = early.record(session, scene, solution, step);
         let mut now = Course {
             step,
             certified,
-            energy: solution.energy + given,
+            energy: solved.energy,
             iterations: if outer.is_empty() {
                 vec![solution.iterations]
             } else {
@@ -180,23 +134,21 @@ pub(super) fn follow(
             load_steps: Vec::new(),
             solve_seconds: seconds[0],
             recover_seconds: seconds[1],
-            solution,
+            solution: solved.solution,
             rows,
             balances: balances.into_iter().map(|b| b.record).collect(),
             unbalanced,
-            slides,
-            scene: None,
+            slides: solved.slides,
             fields: None,
         };
-        if let Some(times) = &times {
-            let (setup_seconds, factored) = set_up.map(|(_, cost)| cost).unzip();
+        if let Some(t) = solved.time {
             now.load_steps.push(LoadStep {
-                setup_seconds,
-                factored,
-                ..load_step_record(times[step], &now)
+                setup_seconds: solved.renewal.map(|r| r.seconds),
+                factored: solved.renewal.map(|r| r.factored),
+                ..load_step_record(t, &now)
             });
         }
-        if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
+        if let (Some(dir), Some(pvd), Some(t)) = (&destination.out, &mut pvd, solved.time) {
             let fields = match &mut fields {
                 Some(fields) => fields,
                 None => fields.insert(Gathered::new(session, scene, solver, place)?),
@@ -205,7 +157,7 @@ pub(super) fn follow(
             let name = step_name(step);
             fields.write_vtu(session, scene, &now.solution, &now.rows, dir, &name)?;
             let file = dir.join(place.file(&name));
-            on_first_rank(session, || pvd.add(times[step], &file))?;
+            on_first_rank(session, || pvd.add(t, &file))?;
         }
         let done = course.insert(now);
         records.outer.append(&mut done.outer);
@@ -214,24 +166,16 @@ pub(super) fn follow(
         if !done.solution.converged() {
             break;
         }
-        if step + 1 < n {
-            let next = done.solution.warm_start();
-            // Where contacts are renewed, the next step has other rows.
-            if !renewed.scene().is_renewed() {
-                checkpoints.save(session, step + 1, || records.clone(), &next)?;
-            }
-            state = Some(next);
-        }
     }
     let last = course.expect("a scene has at least one load step");
-    Ok(Course {
+    let course = Course {
         outer: records.outer,
         load_steps: records.load_steps,
         iterations: records.iterations,
         fields,
-        scene: renewed.into_scene(),
         ..last
-    })
+    };
+    Ok((stepper, course))
 }
 
 /// Lists the files of an interrupted run at the front of the time series.

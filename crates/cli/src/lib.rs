@@ -24,7 +24,6 @@ mod plan;
 mod plan_record;
 mod plan_tables;
 mod record;
-mod renewed;
 mod row_forces;
 mod searches;
 mod single;

@@ -15,7 +15,6 @@ use super::{doubts, inputs, maps, picture, smoothed};
 use crate::checkpoint::Checkpoints;
 use base::{Error, Result};
 use fetifeti::problem::BodyNode;
-use fetifeti::settings::MethodSettings;
 use fetifeti::{FetiFeti, Status};
 use petsc::{give_back, Session};
 use report::destination::Destination;
@@ -25,10 +24,7 @@ use report::output;
 use report::pictures::contact_map;
 use report::plots::{load_steps, profile};
 use report::tables::summary;
-use scene::{distribution, fits, DeckScenes, Scene};
-
-/// Number of directions that a load step passes on to the next one.
-const DIRECTIONS: usize = 30;
+use scene::{distribution, fits, DeckScenes, Scene, Stepper};
 
 /// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
@@ -140,28 +136,30 @@ fn solve(
     give_back(); // what reading took
     let assemble = start.elapsed().as_secs_f64();
 
-    let settings =
-        MethodSettings::default().recycle(if scene.steps.is_some() { DIRECTIONS } else { 0 });
-    let mut solver = FetiFeti::new(session, substructures, settings)?;
+    let solver = FetiFeti::new(session, substructures, Stepper::settings(scene))?;
     give_back(); // lists of the set-up
+    let stepper = Stepper::with_solver(scene, solver)?;
     let place = if args.pieces {
         GatherTarget::EachRank
     } else {
         GatherTarget::FirstRank
     };
     let written = (checkpoints, &events);
-    let course = follow(session, scene, &mut solver, destination, place, written)?;
-    let scene = course.scene.as_ref().unwrap_or(scene);
+    let (mut stepper, course) = follow(session, stepper, destination, place, written)?;
     let solution = &course.solution;
-    let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
+    let exact = match (
+        stepper.solver().settings().method.spectrum,
+        solution.steps.last(),
+    ) {
         (false, _) => None,
         (true, Some(step)) if step.exact.is_some() => step.exact,
-        (true, _) => solver.spectrum()?,
+        (true, _) => stepper.solver_mut().spectrum()?,
     };
-    let mut report = report(session, scene, &solver, &course, exact)?;
-    if solver.settings().method.check {
-        report.check = Some(checks(&mut solver, exact)?);
+    let mut report = report(session, stepper.scene(), stepper.solver(), &course, exact)?;
+    if stepper.solver().settings().method.check {
+        report.check = Some(checks(stepper.solver_mut(), exact)?);
     }
+    let (scene, solver) = (stepper.scene(), stepper.solver());
     report.seconds.assemble = assemble;
     if session.rank() == 0 {
         report.inputs = inputs::of(&args.scene);
@@ -173,14 +171,14 @@ fn solve(
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {
-        let values = NodalValues::displacements(session, scene, &solver, solution, course.step)?;
+        let values = NodalValues::displacements(session, scene, solver, solution, course.step)?;
         let found = match session.rank() {
             0 => values.probes(scene),
             _ => Ok(Vec::new()),
         };
         report.probes = session.agree(found)?;
         let forces = match asked {
-            Some(true) => Some(NodalValues::forces(session, scene, &solver, &course)?),
+            Some(true) => Some(NodalValues::forces(session, scene, solver, &course)?),
             _ => None,
         };
         if let (0, Some(deck)) = (session.rank(), &deck) {
@@ -195,7 +193,7 @@ fn solve(
     }
     report.node_print.clone_from(&printed);
     if let Some(dir) = &destination.out {
-        write_fields(session, scene, &solver, &course, place, dir)?;
+        write_fields(session, scene, solver, &course, place, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
     on_first_rank(session, || write_report(destination, &report, place))?;

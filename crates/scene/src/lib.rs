@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! TOML ── read ──> SceneSpec ── Scene::new ──> Scene ──┬─> Problem   (the method)
-//!                     ▲                                ├─> Numbering       (assembled baselines)
+//!                     ▲                                ├─> Stepper   (a solution for each load step)
+//!                     │                                ├─> Numbering       (assembled baselines)
 //!      a program ─────┘                                ├─> SubdomainMesh   (output, error norms)
 //!                                                      └─> Plan            (what will be built)
 //! ```
@@ -43,6 +44,7 @@ mod renewal;
 pub(crate) mod rows;
 mod side_pair;
 pub mod sliding;
+pub mod stepper;
 mod validate;
 
 /// Elements and materials, as scenes name them.
@@ -86,3 +88,4 @@ pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, InterfacePoint, PointRow};
 pub use rows::terms::{RowTerm, RowTerms};
 pub use side_pair::{SidePair, SurfaceObstacle};
+pub use stepper::{StepSolution, Stepper, StepperState};

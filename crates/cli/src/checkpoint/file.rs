@@ -4,8 +4,9 @@
 //!     "fetifeti checkpoint\n"   version u32   length of the content u64   content   hash of all before u64
 //! ```
 //!
-//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. The content is not
-//! read before length and hash are found right. A file is replaced as a whole or not at all.
+//! The content is a [`Checkpoint`] as JSON, so that its fields have names: a file from before a field was added is read
+//! with the field's default, and a field that is not known is passed over. The numbers around it are little-endian. The
+//! content is not read before length and hash are found right. A file is replaced as a whole or not at all.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,8 +17,8 @@ use base::{Error, Location, Result};
 use report::output;
 
 const MAGIC: &[u8] = b"fetifeti checkpoint\n";
-/// Version of the format; it changes with the content or its meaning.
-const VERSION: u32 = 4;
+/// Version of the format; it changes with the meaning of fields, not with new ones.
+const VERSION: u32 = 5;
 /// Bytes in front of the content; bytes behind it.
 const HEAD: usize = MAGIC.len() + 4 + 8;
 const TAIL: usize = 8;
@@ -90,7 +91,7 @@ pub(super) fn hash_of(path: &Path) -> Result<u64> {
 }
 
 fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {
-    around(&postcard::to_allocvec(checkpoint).expect("numbers, texts and lists have a form"))
+    around(&serde_json::to_vec(checkpoint).expect("numbers, texts and lists have a form"))
 }
 
 /// The file with this content.
@@ -141,8 +142,8 @@ pub(crate) fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String>
             "the checkpoint is damaged: checksum {here:016x}, expected {written:016x}"
         ));
     }
-    match postcard::take_from_bytes::<Checkpoint>(&whole[HEAD..]) {
-        Ok((checkpoint, [])) if checkpoint.state.is_consistent() => Ok(checkpoint),
+    match serde_json::from_slice::<Checkpoint>(&whole[HEAD..]) {
+        Ok(checkpoint) if checkpoint.stepper.contact.is_consistent() => Ok(checkpoint),
         _ => Err(
             "the checkpoint contradicts itself, expected one that --checkpoint has written".into(),
         ),

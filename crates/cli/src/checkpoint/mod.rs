@@ -1,30 +1,25 @@
 //! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file holds the current load step, the state of the contact loop in it, and the records of everything before. Where
-//! load steps renew contacts it holds the displacements, too, from which those of the current step follow. It belongs
-//! to a scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
+//! A file holds the state of the stepper ([`StepperState`]) and the records of everything before. It belongs to a
+//! scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
 //!
-//! | file | task |
-//! |---|---|
-//! | [`rows`] | removes the ranks from a state, and distributes it again |
-//! | [`mod@file`] | writes a checkpoint file, and checks and reads it |
-//! | this one | decides whether a checkpoint belongs to a scene, and resumes from it |
+//! [`mod@file`] writes a checkpoint file, and checks and reads it. This file decides whether a checkpoint belongs to a
+//! scene, and resumes from it.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Location, Result};
-use fetifeti::solution::State;
-use fetifeti::FetiFeti;
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use parallel::exchange::gather_all;
 use petsc::Session;
 use report::json::contact::{LoadStep, OuterStep};
 use report::output;
-use rows::{CheckpointLayout, GlobalState};
-use scene::{Displaced, Field, Scene};
+use scene::stepper::Checkpointer;
+use scene::{Field, Scene, Stepper, StepperState};
 
 pub mod file;
-pub mod rows;
 
 /// The content of a checkpoint: everything that a run needs to resume.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,23 +28,11 @@ pub struct Checkpoint {
     pub title: String,
     /// Fingerprint of the scene.
     pub scene: u64,
-    /// The current load step.
-    pub load_step: usize,
-    /// The [`Records`] up to this state, as JSON.
-    pub records: String,
-    /// The displacements by body and node for which the contacts of the load step were made; empty unless load steps
-    /// renew them.
-    pub left: Vec<(usize, usize, [f64; 3])>,
-    /// The state of the contact loop in the load step.
-    pub state: GlobalState,
-}
-
-/// The part of a checkpoint that every rank needs.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Before {
-    load_step: usize,
-    records: String,
-    left: Vec<(usize, usize, [f64; 3])>,
+    /// The records up to this state.
+    #[serde(default)]
+    pub records: Records,
+    /// The load step, and the state of the contact loop in it.
+    pub stepper: StepperState,
 }
 
 /// The files that the command line names, checked before the solve.
@@ -60,30 +43,8 @@ pub struct Checkpoints {
     resume: Option<PathBuf>,
     title: String,
     scene: u64,
-    /// The checkpoint that was read; only rank 0 has the state.
+    /// The checkpoint that was read, on rank 0.
     found: Option<Checkpoint>,
-    /// The rest of it, on every rank.
-    before: Option<Before>,
-}
-
-/// [`Checkpoints`] with a solver that provides and takes states.
-pub struct AttachedCheckpoints {
-    asked: Checkpoints,
-    layout: Option<CheckpointLayout>,
-    start: Option<State>,
-    /// The displacements for which the present contacts were made, where load steps renew them.
-    left: Displaced,
-}
-
-/// The point at which a run resumes; without a checkpoint, the beginning.
-#[derive(Debug, Default)]
-pub struct Resumed {
-    /// Load step, from 0.
-    pub load_step: usize,
-    /// The records of everything before.
-    pub records: Records,
-    /// The state of the contact loop in this load step.
-    pub state: Option<State>,
 }
 
 /// The part of a run's report that was made before a checkpoint.
@@ -132,7 +93,6 @@ impl Checkpoints {
             title: scene.title.clone(),
             scene: 0,
             found: None,
-            before: None,
         };
         if out.file.is_none() && out.resume.is_none() {
             return Ok(out);
@@ -142,15 +102,6 @@ impl Checkpoints {
             _ => Ok(()),
         };
         session.agree(read)?;
-        if out.resume.is_some() {
-            let before = out.found.as_ref().map(|c| Before {
-                load_step: c.load_step,
-                records: c.records.clone(),
-                left: c.left.clone(),
-            });
-            let everywhere = before.map(|before| vec![before; session.size()]);
-            out.before = Some(rows::from_first(session, everywhere));
-        }
         Ok(out)
     }
 
@@ -197,68 +148,38 @@ impl Checkpoints {
                     path.display()
                 )));
             }
-            if found.load_step >= scene.n_steps() {
-                return Err(Error::input(format!(
-                    "{name}: the checkpoint stands in load step {}, expected one below {}",
-                    found.load_step,
-                    scene.n_steps()
-                )));
-            }
             self.found = Some(found);
         }
         Ok(())
     }
 
-    /// The load step at which the run resumes, and the displacements for which its contacts were made; `None` without a
-    /// checkpoint, and in the first load step.
-    pub fn left(&self) -> Option<(usize, Displaced)> {
-        let before = self.before.as_ref().filter(|b| b.load_step > 0)?;
-        Some((before.load_step, Displaced::of_nodes(&before.left)))
-    }
-
-    /// Determines the owners of rows in this run. The solver must have the rows of the load step at which it resumes.
-    /// Collective.
+    /// The stepper at the point at which the run resumes, and the records of everything before; without a checkpoint,
+    /// the beginning. Collective.
     ///
     /// # Errors
-    /// A checkpoint whose rows are not those of the solver.
-    pub fn attach(mut self, session: &Session, solver: &FetiFeti) -> Result<AttachedCheckpoints> {
-        let wanted = self.file.is_some() || self.resume.is_some();
-        let layout = wanted.then(|| CheckpointLayout::new(solver.method()));
-        let start = match (&layout, &self.resume) {
-            (Some(layout), Some(file)) => {
-                let state = self.found.take().map(|found| found.state);
-                Some(layout.scatter(session, file, state.as_ref())?)
-            }
-            _ => None,
+    /// A checkpoint whose rows are not those of the solver, contacts that cannot be renewed.
+    pub fn resume<'a>(
+        &mut self,
+        session: &Session,
+        stepper: Stepper<'a>,
+    ) -> Result<(Stepper<'a>, Records)> {
+        let Some(file) = &self.resume else {
+            return Ok((stepper, Records::default()));
         };
-        Ok(AttachedCheckpoints {
-            left: self.left().map(|(_, left)| left).unwrap_or_default(),
-            asked: self,
-            layout,
-            start,
-        })
-    }
-}
-
-impl AttachedCheckpoints {
-    /// The point at which the run resumes. Collective.
-    ///
-    /// # Errors
-    /// Records that this program has not written.
-    pub fn resume(&self, session: &Session) -> Result<Resumed> {
-        let (Some(before), Some(file)) = (&self.asked.before, &self.asked.resume) else {
-            return Ok(Resumed::default());
-        };
-        let records = serde_json::from_str(&before.records).map_err(|e| {
-            Error::input("the records of the checkpoint cannot be read")
-                .at(Location::file_named(file.display().to_string()))
-                .because(e)
-        });
-        Ok(Resumed {
-            load_step: before.load_step,
-            records: session.agree(records)?,
-            state: self.start.clone(),
-        })
+        let found = self.found.take();
+        let state = found.as_ref().map(|found| &found.stepper);
+        let resumed = stepper.resume(state).map_err(|e| match e.is_input() {
+            true => e.at(Location::file_named(file.display().to_string())),
+            false => e,
+        })?;
+        let text = found.map_or(Ok(Vec::new()), |found| serde_json::to_vec(&found.records));
+        let text = text.expect("numbers, texts and lists have a form");
+        let words: Vec<u32> = pod_collect_to_vec(&text);
+        let everywhere = gather_all(session.comm(), &words).concat();
+        // Behind the text are zeros up to a whole word.
+        let mut text = serde_json::Deserializer::from_slice(cast_slice(&everywhere));
+        let records = Records::deserialize(&mut text).expect("rank 0 has written it");
+        Ok((resumed, records))
     }
 
     /// The error of a run that a signal has ended: where it was, and how to go on from there.
@@ -270,7 +191,7 @@ impl AttachedCheckpoints {
         if steps > 0 {
             what += &format!(" after {steps} contact steps");
         }
-        what += match (&self.asked.file, load_step + steps) {
+        what += match (&self.file, load_step + steps) {
             (Some(file), 1..) => {
                 return Error::environment(format!("{what}, --resume {} goes on", file.display()))
             }
@@ -280,46 +201,34 @@ impl AttachedCheckpoints {
         Error::environment(what)
     }
 
-    /// Notes that the solver has new rows, made for these displacements. Collective.
-    pub fn renewed(&mut self, solver: &FetiFeti, left: &Displaced) {
-        if let Some(layout) = &mut self.layout {
-            *layout = CheckpointLayout::new(solver.method());
-            self.left.clone_from(left);
-        }
+    /// Makes checkpoints inside the load step that is ready, if a file was asked for. Collective.
+    pub fn checkpointer(&self, stepper: &Stepper) -> Option<Checkpointer> {
+        self.file.as_ref().map(|_| stepper.checkpointer())
     }
 
-    /// Writes the state of load step `load_step` and the records so far; does nothing where no file was asked for.
-    /// Between two load steps the state is the beginning of the next one. Collective.
+    /// Writes a state, which rank 0 has, and the records so far; does nothing where no file was asked for. Collective.
     ///
     /// # Errors
     /// [`ErrorKind::Environment`](base::ErrorKind::Environment) when the disk refuses; the old file is then untouched.
     pub fn save(
         &self,
         session: &Session,
-        load_step: usize,
+        state: Option<StepperState>,
         records: impl FnOnce() -> Records,
-        state: &State,
     ) -> Result<()> {
-        let (Some(file), Some(layout)) = (&self.asked.file, &self.layout) else {
+        let Some(file) = &self.file else {
             return Ok(());
         };
-        let write = |state| {
-            let records = serde_json::to_string(&records()).map_err(|e| {
-                Error::environment("")
-                    .at(Location::file_named(file.display().to_string()))
-                    .because(e)
-            })?;
+        let write = |stepper| {
             let content = Checkpoint {
-                title: self.asked.title.clone(),
-                scene: self.asked.scene,
-                load_step,
-                records,
-                left: self.left.nodes(),
-                state,
+                title: self.title.clone(),
+                scene: self.scene,
+                records: records(),
+                stepper,
             };
             file::write(file, &content)
         };
-        session.agree(layout.gather(session, state).map_or(Ok(()), write))
+        session.agree(state.map_or(Ok(()), write))
     }
 }
 

@@ -10,7 +10,6 @@
 //! ```
 
 use std::ops::Range;
-use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -36,7 +35,7 @@ pub struct GlobalState {
 
 impl GlobalState {
     /// Whether the lengths of the lists agree with the numbers of rows.
-    pub(super) fn is_consistent(&self) -> bool {
+    pub fn is_consistent(&self) -> bool {
         let contact = checked_sum(self.blocks.iter().map(|b| b.1));
         let all = checked_sum(self.local.iter().copied().chain(contact));
         contact == Some(self.all.active.len() as u64)
@@ -69,7 +68,7 @@ impl Chunk {
 
 /// The owners of the rows, known to rank 0.
 #[derive(Debug)]
-pub struct CheckpointLayout {
+pub(super) struct RowLayout {
     /// On the owned rows: Z⁰, and what says whether it may change.
     initial: Vec<bool>,
     law: Vec<Law>,
@@ -82,9 +81,9 @@ pub struct CheckpointLayout {
     owned: Vec<usize>,
 }
 
-impl CheckpointLayout {
+impl RowLayout {
     /// The owners in this run. Collective.
-    pub fn new(solver: &LinearMethod) -> CheckpointLayout {
+    pub fn new(solver: &LinearMethod) -> RowLayout {
         let (session, problem) = (solver.session(), solver.problem());
         let dual = solver.dual();
         let jump = &dual.stiffness.jump;
@@ -116,7 +115,7 @@ impl CheckpointLayout {
         }
         chunks.iter_mut().for_each(|c| c.sort_unstable());
         let [local, blocks] = chunks;
-        CheckpointLayout {
+        RowLayout {
             initial: jump.initial.clone(),
             law: jump.law.clone(),
             r: dual.natural.r,
@@ -146,17 +145,12 @@ impl CheckpointLayout {
         })
     }
 
-    /// This rank's part of the state that rank 0 has read from `file`. Collective.
+    /// This rank's part of the state that rank 0 has. Collective.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) that names the file if its rows are not those of this run.
-    pub fn scatter(
-        &self,
-        session: &Session,
-        file: &Path,
-        global: Option<&GlobalState>,
-    ) -> Result<State> {
-        session.agree(global.map_or(Ok(()), |global| self.fits(file, global)))?;
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) if its rows are not those of this run.
+    pub fn scatter(&self, session: &Session, global: Option<&GlobalState>) -> Result<State> {
+        session.agree(global.map_or(Ok(()), |global| self.fits(global)))?;
         let mut state: State = from_first(session, global.map(|global| self.deal(global)));
         // Equations are always active.
         for set in [&mut state.active, &mut state.before] {
@@ -188,7 +182,7 @@ impl CheckpointLayout {
         out
     }
 
-    fn fits(&self, file: &Path, global: &GlobalState) -> Result<()> {
+    fn fits(&self, global: &GlobalState) -> Result<()> {
         let local = self.local.iter().map(|c| c.n as u64);
         let blocks = self.blocks.iter().map(|c| (c.key, c.n as u64));
         let here = [&self.local, &self.blocks].map(|c| c.iter().map(|c| c.n).sum::<usize>());
@@ -197,9 +191,8 @@ impl CheckpointLayout {
         if !same {
             let n = global.all.active.len();
             return Err(Error::input(format!(
-                "{}: the checkpoint is for {} subdomains with {} local and {n} global multipliers, \
+                "the checkpoint is for {} subdomains with {} local and {n} global multipliers, \
                  expected {} with {} and {} numbered alike",
-                file.display(),
                 global.local.len(),
                 global.all.lambda.len() - n,
                 self.local.len(),
@@ -209,8 +202,7 @@ impl CheckpointLayout {
         }
         if !global.all.mu.is_empty() && global.all.mu.len() != self.r {
             return Err(Error::input(format!(
-                "{}: the checkpoint is for bodies with {} rigid motions, expected {}",
-                file.display(),
+                "the checkpoint is for bodies with {} rigid motions, expected {}",
                 global.all.mu.len(),
                 self.r
             )));

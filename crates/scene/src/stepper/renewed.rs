@@ -4,15 +4,15 @@
 use std::collections::HashMap;
 use std::time::Instant;
 
-use super::course::Course;
+use crate::checked::Scene;
+use crate::displaced::Displaced;
 use base::{Error, Result};
 use fetifeti::inside::factorisations;
 use fetifeti::problem::{BodyNode, RowLabel, RowSource};
 use fetifeti::solution::{SolvedRow, State};
-use fetifeti::FetiFeti;
+use fetifeti::{FetiFeti, Solution};
 use parallel::exchange::total;
 use petsc::Session;
-use scene::{Displaced, Scene};
 
 /// A scene whose contacts are renewed, or stay as they are.
 pub(super) struct Renewed<'a> {
@@ -22,10 +22,19 @@ pub(super) struct Renewed<'a> {
     /// The displacements at the end of the last step, and those for which the present contacts were made.
     end: Displaced,
     start: Displaced,
+    /// The rows of the last step, and its multipliers inside bodies.
+    last: Option<(Vec<SolvedRow>, Vec<f64>)>,
 }
 
-/// The cost of a renewal: seconds of set-up, and subdomains that were factored, over all ranks.
-type RenewalCost = (f64, usize);
+/// The cost of renewed contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct RenewalCost {
+    /// Seconds of the search for contacts and of the set-up of the solver.
+    pub seconds: f64,
+    /// Number of subdomains that were factored, over all ranks.
+    pub factored: usize,
+}
 
 impl<'a> Renewed<'a> {
     pub fn new(scene: &'a Scene) -> Renewed<'a> {
@@ -34,6 +43,7 @@ impl<'a> Renewed<'a> {
             present: scene.is_renewed().then(|| Box::new(scene.clone())),
             end: Displaced::default(),
             start: Displaced::default(),
+            last: None,
         }
     }
 
@@ -42,21 +52,12 @@ impl<'a> Renewed<'a> {
         self.present.as_deref().unwrap_or(self.scene)
     }
 
-    /// The scene with the present contacts, if contacts are renewed.
-    pub fn into_scene(self) -> Option<Scene> {
-        self.present.map(|scene| *scene)
-    }
-
-    /// Notes the displacements at the end of a step; returned are those since the present contacts were made.
-    pub fn since(&mut self, u: Displaced) -> Displaced {
-        match self.present {
-            Some(_) => {
-                let out = u.since(&self.start);
-                self.end = u;
-                out
-            }
-            None => u,
-        }
+    /// Notes the end of a step with these displacements; returned are those since the present contacts were made.
+    pub fn end(&mut self, u: Displaced, solution: &Solution) -> Displaced {
+        let out = u.since(&self.start);
+        self.end = u;
+        self.last = Some((solution.rows().to_vec(), solution.inside_bodies().to_vec()));
+        out
     }
 
     /// The displacements for which the present contacts were made.
@@ -71,17 +72,18 @@ impl<'a> Renewed<'a> {
     /// As [`Renewed::renew`].
     pub fn resume(
         &mut self,
-        session: &Session,
         owns: &dyn Fn(usize) -> bool,
         solver: &mut FetiFeti,
-        (step, left): (usize, Displaced),
+        step: usize,
+        left: Displaced,
     ) -> Result<()> {
         if self.present.is_none() {
             return Ok(());
         }
         self.end = left;
-        self.renew_at_end(session, step)?;
-        solver.set_rows(self.scene().rows(owns))
+        let renewed = self.renew_at_end(solver.session(), step);
+        let set_up = renewed.and_then(|()| solver.set_rows(self.scene().rows(owns)));
+        set_up.map_err(|e| self.at_step(step, e))
     }
 
     /// Renews the contacts at the displacements of the end of the last step. Collective.
@@ -93,24 +95,36 @@ impl<'a> Renewed<'a> {
         Ok(())
     }
 
-    /// Renews the contacts for load step `step` after the solution `last`. Returned are the start of the contact loop
-    /// and the cost; `None` where contacts stay as they are. Collective.
+    /// Renews the contacts for load step `step` after the end of the last one. Returned are the start of the contact
+    /// loop and the cost; `None` where contacts stay as they are, and where no step has ended. Collective.
     ///
     /// # Errors
     /// Given values that contradict an inequality, a body that nothing holds any more.
     pub fn renew(
         &mut self,
-        session: &Session,
         owns: &dyn Fn(usize) -> bool,
         solver: &mut FetiFeti,
-        last: &Course,
         step: usize,
     ) -> Result<Option<(Option<State>, RenewalCost)>> {
-        let Some(scene) = &self.present else {
+        let Some((last, inside)) = self.last.take() else {
             return Ok(None);
         };
+        let renewed = self.renew_after(&last, &inside, owns, solver, step);
+        renewed.map(Some).map_err(|e| self.at_step(step, e))
+    }
+
+    fn renew_after(
+        &mut self,
+        last: &[SolvedRow],
+        inside: &[f64],
+        owns: &dyn Fn(usize) -> bool,
+        solver: &mut FetiFeti,
+        step: usize,
+    ) -> Result<(Option<State>, RenewalCost)> {
+        let session = solver.session().clone();
         let (clock, before) = (Instant::now(), factorisations());
-        let solved = SolvedRow::on_all_ranks(session.comm(), last.solution.rows());
+        let scene = self.scene();
+        let solved = SolvedRow::on_all_ranks(session.comm(), last);
         let mut known: HashMap<RowKey, (f64, bool)> = HashMap::new();
         for row in &solved {
             let value = (row.multiplier, row.holds());
@@ -118,7 +132,7 @@ impl<'a> Renewed<'a> {
                 known.insert(place, value);
             }
         }
-        self.renew_at_end(session, step)?;
+        self.renew_at_end(&session, step)?;
         let scene = self.scene();
         let rows = scene.rows(owns);
         let start = rows.iter().map(|row| {
@@ -133,14 +147,15 @@ impl<'a> Renewed<'a> {
         let new = |s: Option<(f64, bool)>| s.unwrap_or((0.0, true));
         let start: Vec<(f64, bool)> = start.into_iter().map(new).collect();
         let some = total(session.comm(), found as f64) > 0.0;
-        let state = some.then(|| solver.start(last.solution.inside_bodies(), &start));
+        let state = some.then(|| solver.start(inside, &start));
         let factored = (factorisations() - before) as f64;
-        let factored = total(session.comm(), factored) as usize;
-        Ok(Some((state, (clock.elapsed().as_secs_f64(), factored))))
+        let cost = RenewalCost {
+            factored: total(session.comm(), factored) as usize,
+            seconds: clock.elapsed().as_secs_f64(),
+        };
+        Ok((state, cost))
     }
-}
 
-impl Renewed<'_> {
     /// An error of load step `step`, from 0: with renewed contacts it says which step that is.
     pub fn at_step(&self, step: usize, error: Error) -> Error {
         if self.present.is_none() || step == 0 || !error.is_input() {
