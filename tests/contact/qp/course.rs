@@ -125,8 +125,14 @@ impl Run<'_> {
         let clock = Instant::now();
         let solved = catch_unwind(AssertUnwindSafe(|| self.solve(&problem, step)));
         times.solver += clock.elapsed();
-        let outcome = outcome.map_err(|panic| Fate::Undecided(said(&*panic)))?;
         let solved = solved.map_err(|panic| Fate::Wrong(format!("a panic: {}", said(&*panic))))?;
+        let outcome = outcome.map_err(|panic| {
+            let answer = match &solved {
+                Ok(solution) => format!("{}, energy {}", solution.status, solution.energy),
+                Err(e) => e.to_string(),
+            };
+            Fate::Undecided(format!("{}; the solver: {answer}", said(&*panic)))
+        })?;
         let reference = match outcome {
             Outcome::Solved(solved) => assembled.reference(solved),
             Outcome::Unbounded(_) => return Err(without("a body moves without bound", solved)),

@@ -95,7 +95,7 @@ fn support(rng: &mut Rng, kind: &Kind, lowest: bool) -> String {
         0..=5 if lowest && kind.floor => format!("dirichlet = {guide}\n"),
         _ if lowest && kind.floor => String::new(),
         0..=9 if lowest => format!("dirichlet = {{ {low} = {value} }}\n"),
-        10 if lowest => format!("dirichlet = {{ {low} = {value}, {one} = 0 }}\n"),
+        10 if lowest => format!("dirichlet = {{ {low} = 0, {one} = 0 }}\n"),
         0 if !lowest => format!("dirichlet = {{ {high} = {value} }}\n"),
         1..=4 if !lowest => format!("dirichlet = {guide}\n"),
         _ => String::new(),

@@ -3,6 +3,7 @@
 
 use super::joints;
 use crate::support::rng::Rng;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Choices that all parts of a scene share.
@@ -200,6 +201,7 @@ fn grid(rng: &mut Rng, kind: &Kind, out: &mut String) {
         let places: Vec<String> = at.iter().map(usize::to_string).collect();
         format!("b{}", places.join("_"))
     };
+    let mut named = BTreeSet::new();
     for _ in 0..rng.below(5) {
         let d = rng.below(kind.dim);
         if counts[d] < 2 {
@@ -209,7 +211,9 @@ fn grid(rng: &mut Rng, kind: &Kind, out: &mut String) {
         at[d] = rng.below(counts[d] - 1);
         let first = name(&at);
         at[d] += 1;
-        joints::joint(rng, kind, [&first, &name(&at)], (false, true), out);
+        if named.insert([first.clone(), name(&at)]) {
+            joints::joint(rng, kind, [&first, &name(&at)], (false, true), out);
+        }
     }
     let lowest = Block {
         name: name(&vec![0; kind.dim]),
