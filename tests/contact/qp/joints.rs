@@ -260,3 +260,35 @@ fn obstacle(rng: &mut Rng, kind: &Kind, block: &Block, upper: bool, out: &mut St
     };
     let _ = write!(out, "{head}side = \"{side}\"\n{shape}\n");
 }
+
+/// Bounds from both sides that leave little room, or none: of a scalar on the two sides of a contact, in elasticity a
+/// side between two planes.
+pub fn squeeze(rng: &mut Rng, kind: &Kind, [lower, upper]: [&Block; 2], out: &mut String) {
+    let [low, high] = ends(kind, kind.axis);
+    let room = *rng.pick(&[-0.02, 0.0, 0.03, 0.1]);
+    if !kind.elastic {
+        let floor = number(rng, -0.1, 0.1);
+        let _ = write!(
+            out,
+            "[[obstacle]]\nbody = \"{}\"\nside = \"{high}\"\nbelow = {floor}\n\
+             [[obstacle]]\nbody = \"{}\"\nside = \"{low}\"\nabove = {}\n",
+            lower.name,
+            upper.name,
+            round(floor + room)
+        );
+        return;
+    }
+    let end = upper.origin[kind.axis] + upper.size[kind.axis];
+    let down = number(rng, 0.0, 0.1);
+    for (place, normal) in [(end - down, 1.0), (end - down + room, -1.0)] {
+        let (mut at, mut n) = (vec![0.0; kind.dim], vec![0.0; kind.dim]);
+        (at[kind.axis], n[kind.axis]) = (round(place), normal);
+        let _ = write!(
+            out,
+            "[[obstacle]]\nbody = \"{}\"\nside = \"{high}\"\nplane = {{ point = {}, normal = {} }}\n",
+            upper.name,
+            list(&at),
+            list(&n)
+        );
+    }
+}

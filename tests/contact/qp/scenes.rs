@@ -113,9 +113,9 @@ fn cut(rng: &mut Rng, most_subdomains: usize, most_each: usize) -> (usize, usize
 fn cuts(rng: &mut Rng, kind: &Kind, fine: bool) -> (Vec<usize>, Vec<usize>) {
     let most = if kind.dim == 2 { 3 } else { 2 };
     let cuts = (0..kind.dim).map(|d| match (kind.dim, fine && d != kind.axis) {
-        (2, true) => cut(rng, most, 9),
+        (2, true) => cut(rng, most, 12),
         (2, false) => cut(rng, most, 3),
-        (_, true) => cut(rng, most, 3),
+        (_, true) => cut(rng, most, 4),
         _ => cut(rng, most, 1),
     });
     cuts.unzip()
@@ -165,6 +165,10 @@ fn pile(rng: &mut Rng, kind: &Kind, out: &mut String) {
         let [a, b] = pair else { unreachable!() };
         let apart = round(a.origin[kind.axis] + a.size[kind.axis]) != b.origin[kind.axis];
         joints::joint(rng, kind, [&a.name, &b.name], (apart, same), out);
+    }
+    if rng.one_in(8) {
+        let k = rng.between(1, count - 1);
+        joints::squeeze(rng, kind, [&blocks[k - 1], &blocks[k]], out);
     }
     joints::obstacles(rng, kind, &blocks, out);
 }

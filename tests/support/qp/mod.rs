@@ -12,6 +12,7 @@
 //! rounding. Every result satisfies its own KKT conditions.
 
 pub mod certificate;
+mod cone;
 mod interior;
 mod kkt;
 mod polish;
@@ -336,7 +337,7 @@ impl Qp {
         for (j, z) in columns.iter().enumerate() {
             z.iter().for_each(|&(i, v)| touching[i].push((j, v)));
         }
-        let project = |rows: &[Row]| -> Vec<Row> {
+        let project = |rows: &[Row]| -> Vec<Vec<f64>> {
             let mut out = Vec::new();
             for row in rows {
                 let mut sums = vec![0.0; columns.len()];
@@ -345,26 +346,16 @@ impl Qp {
                 }
                 let norm = row.terms.iter().map(|&(i, b)| (b * d[i]).powi(2));
                 let norm = norm.sum::<f64>().sqrt();
-                let terms: Vec<(usize, f64)> = (0..columns.len())
-                    .filter(|&j| sums[j].abs() > 1e-12 * norm)
-                    .map(|j| (j, sums[j]))
-                    .collect();
-                if !terms.is_empty() {
-                    out.push(Row::new(terms, 0.0));
+                let small = |sum: &mut f64| *sum *= f64::from(u8::from(sum.abs() > 1e-12 * norm));
+                sums.iter_mut().for_each(small);
+                let size = sums.iter().map(|s| s * s).sum::<f64>().sqrt();
+                if size > 0.0 {
+                    out.push(sums.iter().map(|s| s / size).collect());
                 }
             }
             out
         };
-        let unit: Vec<_> = (0..columns.len() as u32).map(|j| (j, j, 1.0)).collect();
-        let alpha = Qp {
-            k: Csr::from_triplets(columns.len(), &unit),
-            equal: project(&self.equal),
-            below: project(&self.below),
-            f: e.clone(),
-            kernel: Vec::new(),
-        }
-        .minimum()
-        .u;
+        let alpha = cone::nearest(&e, &project(&self.equal), &project(&self.below));
         let largest = alpha.iter().fold(0.0f64, |m, a| m.max(a.abs()));
         if largest <= 1e-10 * load {
             return None;
