@@ -63,59 +63,7 @@ pub fn judge(
         energy: solution.energy,
     };
     let tolerances = Tolerances::default();
-    let agreement = compare(problem, reference, &answer, &tolerances);
-    if std::env::var("H3DEBUG").is_ok() {
-        let (length, force) = certificate::sizes(
-            &problem.qp,
-            &reference.u,
-            &reference.solved.equal,
-            &reference.solved.below,
-        );
-        println!(
-            "length {length:e} force {force:e} kernel {} energies {:e} {:e} own {:e} ref own {:e}",
-            problem.qp.kernel.len(),
-            reference.energy,
-            answer.energy,
-            problem.qp.energy(u),
-            problem.qp.energy(&reference.u)
-        );
-        for b in 0..=*problem.body.iter().max().unwrap() {
-            let of = |v: &[f64]| {
-                problem
-                    .body
-                    .iter()
-                    .zip(v)
-                    .filter(|e| *e.0 == b)
-                    .fold(0.0f64, |a, e| a.max(e.1.abs()))
-            };
-            let d: Vec<f64> = u.iter().zip(&reference.u).map(|(a, b)| a - b).collect();
-            println!(
-                "body {b}: u ref {:e} ours {:e} diff {:e}",
-                of(&reference.u),
-                of(u),
-                of(&d)
-            );
-        }
-        println!("ref kkt {:?}", reference.solved.kkt);
-        for (r, place) in problem.place.iter().enumerate() {
-            let Place::Below(k) = *place else { continue };
-            let row = &problem.qp.below[k];
-            if std::env::var("H3DEBUG").is_ok_and(|v| v == "1") {
-                continue;
-            }
-            println!(
-                "row {r} {:?}: gap ref {:e} ours {:e} lambda ref {:e} ours {:e} holds {} norm {:e}",
-                rows[r].label.members,
-                row.rhs - row.times(&reference.u),
-                row.rhs - row.times(u),
-                reference.solved.below[k],
-                lambda[r],
-                rows[r].holds(),
-                row.norm()
-            );
-        }
-    }
-    let agreement = agreement?;
+    let agreement = compare(problem, reference, &answer, &tolerances)?;
     let (length, force) = certificate::sizes(
         &problem.qp,
         &reference.u,

@@ -122,7 +122,13 @@ pub fn compare(
     let (motions, distance) = distance(problem, &reference.u, answer.u, &strict);
     out.free_motions = motions;
     out.u = relative(distance, length);
-    limit("u", out.u, tolerances.u);
+    // Motions that bodies hardly resist are not known to so many digits. If the displacements of the answer satisfy all
+    // conditions with the multipliers of the reference, too, then both are solutions.
+    let (equal, below) = (&reference.solved.equal, &reference.solved.below);
+    let crossed = certificate::kkt(qp, answer.u, equal, below).largest();
+    if crossed.is_nan() || crossed > 0.1 * tolerances.kkt {
+        limit("u", out.u, tolerances.u);
+    }
     if !mixed.is_empty() {
         wrong.push(format!(
             "rows closed in one and open in the other: {}",

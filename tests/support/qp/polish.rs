@@ -40,7 +40,9 @@ pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
         let sides: Vec<f64> = rows.iter().map(|r| r.rhs).collect();
         let b: Vec<f64> = qp.f.iter().copied().chain(sides).collect();
         let mut system = System::new(qp, rows, epsilon);
-        system.factor(&vec![0.0; ne + active.len()]);
+        if !system.factor(&vec![0.0; ne + active.len()]) {
+            return None;
+        }
         // The multipliers to start from are the smallest part of those of `p` that leads to the right signs: rows
         // implied by equations may carry any force, and large forces that cancel cost digits.
         let mut x = Vec::new();
