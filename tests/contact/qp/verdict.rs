@@ -71,17 +71,26 @@ pub fn judge(
         &reference.solved.below,
     );
 
-    // The rows that hold, where the reference decides it.
-    let (mut open, mut wrong) = (vec![false; rows.len()], Vec::new());
+    // Rows that hold are closed, and rows that carry force hold, where no others could carry it.
+    let sizes = (tolerances.strict * length, tolerances.strict * force);
+    let gap = |k: usize, u: &[f64]| {
+        let row = &problem.qp.below[k];
+        (row.rhs - row.times(u)) / row.norm()
+    };
+    let open: Vec<bool> = problem
+        .place
+        .iter()
+        .map(|p| matches!(*p, Place::Below(k) if gap(k, &reference.u) > sizes.0))
+        .collect();
+    let unique = Unique::new(problem, &open);
+    let length = length.max(largest(u.iter().copied()));
+    let mut wrong = Vec::new();
     for (r, place) in problem.place.iter().enumerate() {
         let Place::Below(k) = *place else { continue };
-        let row = &problem.qp.below[k];
-        let gap = (row.rhs - row.times(&reference.u)) / row.norm();
-        open[r] = gap > tolerances.strict * length;
-        let own = (row.rhs - row.times(u)) / row.norm();
-        let own_open = own > tolerances.strict * length.max(largest(u.iter().copied()));
-        let carries = reference.solved.below[k] * row.norm() > tolerances.strict * force;
-        if (own_open && rows[r].holds()) || (carries && !rows[r].holds()) {
+        let apart = gap(k, u) > tolerances.strict * length;
+        let carries = reference.solved.below[k] * problem.qp.below[k].norm() > sizes.1;
+        let missed = carries && !rows[r].holds() && unique.force(&[r]);
+        if missed || (apart && rows[r].holds()) {
             wrong.push(r);
         }
     }
@@ -97,7 +106,6 @@ pub fn judge(
         closed: agreement.closed,
         ..Agreed::default()
     };
-    let unique = Unique::new(problem, &open);
     let below = |&r: &usize| matches!(problem.place[r], Place::Below(_));
     let mut pairs: BTreeMap<RowSource, Vec<usize>> = BTreeMap::new();
     for r in (0..rows.len()).filter(below) {
