@@ -5,7 +5,7 @@
 //! residual changes the energy by its work on the multipliers, which are up to 10³ times as large as the residual's
 //! reference where stiffnesses jump by 10⁴. A wrong row changes the energy by the square of what it moves.
 
-use crate::support::assembled::compare::{compare, Candidate, Tolerances};
+use crate::support::assembled::compare::{compare, energy_scale, Candidate, Tolerances};
 use crate::support::assembled::{Assembled, Place, Reference};
 use crate::support::qp::certificate::{self, largest};
 use faer::{Mat, Side};
@@ -46,6 +46,12 @@ impl Agreed {
         self.forces += other.forces;
         self.shared += other.shared;
     }
+}
+
+/// How exactly the reference knows its energy, relative to the scale of errors.
+pub fn known(problem: &Assembled, reference: &Reference) -> f64 {
+    let other = problem.qp.energy(&reference.u);
+    (other - reference.energy).abs() / energy_scale(problem, reference)
 }
 
 /// Compares a solution, whose displacements by unknown are `u`, with the reference; an error lists what is wrong.

@@ -144,7 +144,7 @@ pub fn compare(
 
 /// The scale of errors of the energy: the energy and the work of the load; where both vanish, the energy that the data
 /// could cause on the diagonal of K.
-fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
+pub fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
     let qp = &problem.qp;
     let stiffness = |i: usize| qp.k.get(i, i);
     let softest = (0..qp.f.len()).map(stiffness).fold(f64::INFINITY, f64::min);
