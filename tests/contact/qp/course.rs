@@ -24,8 +24,8 @@ const ENERGY: f64 = 1e-9;
 pub enum Fate {
     /// Every load step has the solution of the quadratic programme.
     Right(Agreed),
-    /// The programme proves that a load step has no solution, and the solver refuses it; the proof and the sentence.
-    NoSolution(&'static str, String),
+    /// The programme proves that a load step has no solution by this, and the solver refuses it.
+    NoSolution(Proof),
     /// Refused when it was read, or when contacts were renewed.
     Refused(String),
     /// The programme comes to no certified answer.
@@ -34,6 +34,15 @@ pub enum Fate {
     NotConverged(String),
     /// The solver is wrong: another answer, an answer where there is none, a refusal of what has a solution, a panic.
     Wrong(String),
+}
+
+/// Why a load step has no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Proof {
+    /// A motion of bodies that nothing stops and the load drives.
+    Unbounded,
+    /// Weights with which the rows contradict each other.
+    Infeasible,
 }
 
 /// Seconds of both, over all load steps.
@@ -139,19 +148,9 @@ impl Run<'_> {
         })?;
         let reference = match outcome {
             Outcome::Solved(solved) => assembled.reference(solved),
-            Outcome::Unbounded(_) => return Err(without("a body moves without bound", solved)),
-            Outcome::Infeasible(_) => return Err(without("rows contradict each other", solved)),
+            Outcome::Unbounded(_) => return Err(without(Proof::Unbounded, solved)),
+            Outcome::Infeasible(_) => return Err(without(Proof::Infeasible, solved)),
         };
-        if std::env::var("H3DEBUG").is_ok() {
-            let u = &reference.u;
-            println!(
-                "step {step}: QP length {:e} energy {:e} own {:e} {:?}",
-                u.iter().fold(0.0f64, |a, u| a.max(u.abs())),
-                reference.energy,
-                assembled.qp.energy(u),
-                reference.solved.kkt
-            );
-        }
         let known = verdict::known(&assembled, &reference);
         if known > ENERGY {
             let why = format!("the programme knows its energy to {known:.1e} only");
@@ -233,11 +232,11 @@ fn warm(solver: &FetiFeti, rows: &[Row], last: &Solution) -> Option<State> {
 }
 
 /// The fate of a load step without a solution.
-fn without(proof: &'static str, solved: Result<Solution>) -> Fate {
+fn without(proof: Proof, solved: Result<Solution>) -> Fate {
     match solved {
-        Err(e) if e.is_input() => Fate::NoSolution(proof, e.to_string()),
-        Err(e) => Fate::NotConverged(format!("{proof}, but: {e}")),
-        Ok(s) if s.converged() => Fate::Wrong(format!("{proof}, but the solver has a solution")),
-        Ok(s) => Fate::NotConverged(format!("{proof}, but: {}", s.status)),
+        Err(e) if e.is_input() => Fate::NoSolution(proof),
+        Err(e) => Fate::NotConverged(format!("{proof:?}, but: {e}")),
+        Ok(s) if s.converged() => Fate::Wrong(format!("{proof:?}, but the solver has a solution")),
+        Ok(s) => Fate::NotConverged(format!("{proof:?}, but: {}", s.status)),
     }
 }

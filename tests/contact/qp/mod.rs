@@ -13,7 +13,7 @@ mod verdict;
 use crate::support::mpi;
 use crate::support::sample::sample;
 use crate::support::session::with_session;
-use course::{fate, Fate, Times};
+use course::{fate, Fate, Proof, Times};
 use fetifeti::settings::ContactType;
 use petsc::Session;
 
@@ -57,8 +57,8 @@ impl Tally {
                 self.u = self.u.max(a.u);
                 self.force = self.force.max(a.force);
             }
-            Fate::NoSolution(proof, _) if proof.contains("bound") => self.unbounded += 1,
-            Fate::NoSolution(..) => self.infeasible += 1,
+            Fate::NoSolution(Proof::Unbounded) => self.unbounded += 1,
+            Fate::NoSolution(Proof::Infeasible) => self.infeasible += 1,
             Fate::Refused(why) => {
                 self.refused += 1;
                 println!("scene {id} refused: {why}");

@@ -2,9 +2,10 @@
 //! as the problem determines them.
 
 use super::super::qp::certificate::{self, largest, relative, Kkt};
+use super::super::qp::Row;
 use super::{Assembled, Place, Reference};
 use faer::prelude::Solve;
-use faer::{Mat, Side};
+use faer::Mat;
 
 /// Limits, all relative.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +28,9 @@ impl Default for Tolerances {
         }
     }
 }
+
+/// Rows stop a motion that moves them by more than this, relative to others.
+const FREE: f64 = 1e-8;
 
 /// The answer of a solver.
 pub struct Candidate<'a> {
@@ -126,7 +130,7 @@ pub fn compare(
     // conditions with the multipliers of the reference, too, then both are solutions.
     let (equal, below) = (&reference.solved.equal, &reference.solved.below);
     let crossed = certificate::kkt(qp, answer.u, equal, below).largest();
-    if crossed.is_nan() || crossed > 0.1 * tolerances.kkt {
+    if crossed.is_nan() || crossed > tolerances.kkt {
         limit("u", out.u, tolerances.u);
     }
     if !mixed.is_empty() {
@@ -175,28 +179,30 @@ fn distance(
     for (j, z) in qp.kernel.iter().enumerate() {
         z.iter().for_each(|&(i, v)| touching[i].push((j, v)));
     }
-    let mut gram = Mat::<f64>::zeros(r, r);
+    if r == 0 {
+        return (0, largest(d));
+    }
     let held = (0..qp.below.len()).filter(|&k| strict(k));
-    for row in qp.equal.iter().chain(held.map(|k| &qp.below[k])) {
+    let rows = qp.equal.iter().chain(held.map(|k| &qp.below[k]));
+    let moved = |row: &Row| {
         let mut g = vec![0.0; r];
         for &(i, b) in &row.terms {
             touching[i].iter().for_each(|&(j, v)| g[j] += b * v);
         }
-        for a in (0..r).filter(|&a| g[a] != 0.0) {
-            (0..r).for_each(|b| gram[(a, b)] += g[a] * g[b]);
-        }
-    }
-    if r == 0 {
-        return (0, largest(d));
-    }
-    let eigen = gram.self_adjoint_eigen(Side::Lower).expect("eigenvalues");
-    let s = eigen.S().column_vector();
+        g
+    };
+    let rows: Vec<Vec<f64>> = rows.map(moved).collect();
+    let matrix = Mat::from_fn(rows.len().max(r), r, |i, j| {
+        rows.get(i).map_or(0.0, |g| g[j])
+    });
+    let svd = matrix.thin_svd().expect("singular values");
+    let s = svd.S().column_vector();
     let top = (0..r).fold(1.0f64, |m, i| m.max(s[i]));
-    let free: Vec<usize> = (0..r).filter(|&i| s[i] <= 1e-10 * top).collect();
+    let free: Vec<usize> = (0..r).filter(|&i| s[i] <= FREE * top).collect();
     if free.is_empty() {
         return (0, largest(d));
     }
-    let basis = Mat::from_fn(r, free.len(), |i, j| eigen.U()[(i, free[j])]);
+    let basis = Mat::from_fn(r, free.len(), |i, j| svd.V()[(i, free[j])]);
     // Least squares in the coefficients of the free motions.
     let mut zz = Mat::<f64>::zeros(r, r);
     let mut zd = Mat::<f64>::zeros(r, 1);
