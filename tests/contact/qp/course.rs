@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 /// The difference of two formulas for the energy of the programme's solution, relative to its scale, above which the
 /// solution has too few digits to judge another: bodies that slide far on sides that are hardly inclined.
-const ENERGY: f64 = 1e-9;
+const ENERGY: f64 = 5e-9;
 
 /// What a scene has come to.
 #[derive(Debug, Clone)]

@@ -77,8 +77,9 @@ impl Tally {
 
     fn summary(&self) -> String {
         format!(
-            "{} right ({} load steps, up to {} inequalities, {} forces; energy within {:.1e}, u {:.1e}, forces {:.1e}), \
-             {} unbounded, {} infeasible, {} refused when read, {} undecided, {} failed; programme {:.1} s, solver {:.1} s",
+            "{} right ({} load steps, up to {} inequalities, {} forces; energy within {:.1e}, u {:.1e}, \
+             forces {:.1e}), {} unbounded, {} infeasible, {} refused when read, {} undecided, {} failed; \
+             programme {:.1} s, solver {:.1} s",
             self.right,
             self.steps,
             self.most_rows,

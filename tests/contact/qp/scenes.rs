@@ -362,7 +362,8 @@ fn discs(rng: &mut Rng, kind: &Kind, out: &mut String) {
         disc(rng, "d0", 1.0, "bottom", &pressed);
         let _ = write!(
             out,
-            "[[obstacle]]\nbody = \"d0\"\nside = \"bottom\"\nplane = {{ point = [0, 0], normal = [0, 1] }}\ngap = {gap}\n"
+            "[[obstacle]]\nbody = \"d0\"\nside = \"bottom\"\n\
+             plane = {{ point = [0, 0], normal = [0, 1] }}\ngap = {gap}\n"
         );
         return;
     }

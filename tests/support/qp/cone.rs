@@ -58,11 +58,12 @@ pub fn nearest(e: &[f64], equal: &[Vec<f64>], below: &[Vec<f64>]) -> Vec<f64> {
             let moved: Vec<f64> = y.iter().zip(&z).map(|(y, z)| y + step * (z - y)).collect();
             // A column that leaves as soon as it has come gains nothing but rounding.
             refused[next] |= !stays[passive.len() - 1] && passive.last() == Some(&next);
-            let keep = |v: &[f64]| -> Vec<f64> {
-                let kept = v.iter().zip(&stays).filter(|(_, stays)| **stays);
-                kept.map(|(v, _)| *v).collect()
-            };
-            y = keep(&moved);
+            y = moved
+                .iter()
+                .zip(&stays)
+                .filter(|(_, stays)| **stays)
+                .map(|(y, _)| *y)
+                .collect();
             let kept = passive.iter().zip(&stays).filter(|(_, stays)| **stays);
             passive = kept.map(|(j, _)| *j).collect();
         }
