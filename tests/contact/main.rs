@@ -11,6 +11,7 @@ mod jumps;
 mod many;
 mod mortar;
 mod oracle;
+mod qp;
 mod qp_reference;
 mod random;
 mod random_reference;

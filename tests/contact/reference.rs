@@ -166,7 +166,8 @@ fn the_comparison_sees_what_is_wrong() {
     let s = problem.solve();
     let good = judged(&problem, &s, &s.u, &s.lambda).unwrap();
     assert_eq!((good.closed, good.open, good.free_motions), (7, 2, 0));
-    assert_eq!((good.energy, good.u), (0.0, 0.0));
+    // The reference has its energy from the work of forces.
+    assert!(good.energy < 1e-13 && good.u == 0.0);
 
     let fails = |u: &[f64], lambda: &[f64], why: &str| {
         let message = judged(&problem, &s, u, lambda).unwrap_err();

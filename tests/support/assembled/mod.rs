@@ -6,6 +6,7 @@
 //! bodies.
 
 pub mod compare;
+mod kernel;
 
 use std::collections::BTreeMap;
 
@@ -13,6 +14,7 @@ use super::qp::{self, Outcome, Qp, Solved};
 use base::linalg::csr::Csr;
 use fetifeti::problem::Law;
 use fetifeti::{Problem, Row};
+use kernel::Column;
 use scene::Scene;
 
 /// The place of a row of the scene in the problem.
@@ -84,13 +86,15 @@ impl Assembled {
             }
         }
         let k = Csr::from_triplets(n, &triplets);
-        let mut kernel: Vec<Vec<(usize, f64)>> = Vec::new();
-        for column in columns.into_values() {
-            let column: Vec<(usize, f64)> = column.into_iter().collect();
-            if is_kernel(&k, &column) {
-                kernel.push(column);
-            }
+        let mut by_body: BTreeMap<usize, Vec<Column>> = BTreeMap::new();
+        for ((body, _), column) in columns {
+            let of_body = by_body.entry(body).or_default();
+            of_body.push(column.into_iter().collect());
         }
+        let of_body = by_body
+            .into_values()
+            .flat_map(|all| kernel::kernel(&k, all));
+        let kernel: Vec<Column> = of_body.collect();
         let (mut equal, mut below, mut place) = (Vec::new(), Vec::new(), Vec::new());
         for row in &problem.rows {
             let terms: Vec<(usize, f64)> = row
@@ -198,19 +202,4 @@ impl Assembled {
 fn find(dofs: &[u64], dof: u64) -> usize {
     dofs.binary_search(&dof)
         .expect("rows and subdomains speak of free body dofs")
-}
-
-/// K z = 0 up to rounding.
-fn is_kernel(k: &Csr, column: &[(usize, f64)]) -> bool {
-    let value: BTreeMap<usize, f64> = column.iter().copied().collect();
-    column.iter().all(|&(i, _)| {
-        let (col, val) = k.row(i);
-        let (mut sum, mut size) = (0.0f64, 0.0f64);
-        for (&j, &v) in col.iter().zip(val) {
-            let z = value.get(&(j as usize)).copied().unwrap_or(0.0);
-            sum += v * z;
-            size += (v * z).abs();
-        }
-        sum.abs() <= 1e-12 * size
-    })
 }

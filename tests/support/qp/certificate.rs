@@ -127,8 +127,13 @@ pub fn check_kernel(qp: &Qp) {
     }
 }
 
-/// y_I ≥ 0, Bᵀy = 0, cᵀy < 0.
+/// Checks that y_I ≥ 0, Bᵀy = 0 and cᵀy < 0.
 pub fn check_contradiction(qp: &Qp, y: &[f64]) {
+    contradiction(qp, y).unwrap_or_else(|why| panic!("{why}"));
+}
+
+/// Whether y_I ≥ 0, Bᵀy = 0 and cᵀy < 0; an error says what is not.
+pub fn contradiction(qp: &Qp, y: &[f64]) -> Result<(), String> {
     let (equal, below) = y.split_at(qp.equal.len());
     assert!(below.iter().all(|&y| y >= 0.0));
     let (mut sum, mut size) = (vec![0.0; qp.f.len()], 0.0f64);
@@ -141,14 +146,21 @@ pub fn check_contradiction(qp: &Qp, y: &[f64]) {
         size = size.max(row.norm() * y.abs());
     }
     let off = largest(sum);
-    assert!(
-        off <= 1e-9 * size && work < -1e-9 * scale,
+    if off <= 1e-9 * size && work < -1e-9 * scale {
+        return Ok(());
+    }
+    Err(format!(
         "the rows seem to contradict each other, but there is no proof: Bᵀy = {off:.1e}, cᵀy = {work:.1e}"
-    );
+    ))
 }
 
-/// K z = 0, B_E z = 0, B_I z ≤ 0, fᵀz > 0.
+/// Checks that K z = 0, B_E z = 0, B_I z ≤ 0 and fᵀz > 0.
 pub fn check_descent(qp: &Qp, z: &[f64]) {
+    descent(qp, z).unwrap_or_else(|why| panic!("{why}"));
+}
+
+/// Whether K z = 0, B_E z = 0, B_I z ≤ 0 and fᵀz > 0; an error says what is not.
+pub fn descent(qp: &Qp, z: &[f64]) -> Result<(), String> {
     let d = scaled::weights(qp);
     let mut kz = vec![0.0; z.len()];
     qp.k.mul(z, &mut kz);
@@ -163,9 +175,11 @@ pub fn check_descent(qp: &Qp, z: &[f64]) {
     );
     let work: f64 = qp.f.iter().zip(z).map(|(f, z)| f * z).sum();
     let scale: f64 = qp.f.iter().zip(z).map(|(f, z)| (f * z).abs()).sum();
-    assert!(
-        stiff <= 1e-9 * scaled_size && stopped <= 1e-9 * size && work > 1e-9 * scale,
+    if stiff <= 1e-9 * scaled_size && stopped <= 1e-9 * size && work > 1e-9 * scale {
+        return Ok(());
+    }
+    Err(format!(
         "the energy seems to have no lower bound, but there is no proof: \
          K z = {stiff:.1e}, B z = {stopped:.1e}, fᵀz = {work:.1e}"
-    );
+    ))
 }

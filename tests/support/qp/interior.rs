@@ -61,7 +61,10 @@ pub fn solve(qp: &Qp, epsilon: f64) -> Point {
 
     // Start: the problem with s = −λ, then both are made positive.
     t[ne..].fill(1.0);
-    system.factor(&t);
+    assert!(
+        system.factor(&t),
+        "a diagonal of one leaves no pivot of zero"
+    );
     let sides = qp.equal.iter().chain(&qp.below).map(|row| row.rhs);
     let b: Vec<f64> = qp.f.iter().copied().chain(sides).collect();
     let mut x = vec![0.0; n + ne + ni];
@@ -91,7 +94,9 @@ pub fn solve(qp: &Qp, epsilon: f64) -> Point {
         for k in 0..ni {
             t[ne + k] = p.slack[k] / p.below[k];
         }
-        system.factor(&t);
+        if !system.factor(&t) {
+            break;
+        }
         let newton = |products: &[f64]| -> Direction {
             // w δλ + λ δs = −products, eliminated: δs = −(products + s δλ)/λ.
             let b: Vec<f64> = r

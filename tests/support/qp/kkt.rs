@@ -70,8 +70,9 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Factorises with the diagonal `t` ≥ 0.
-    pub fn factor(&mut self, t: &[f64]) {
+    /// Factorises with the diagonal `t` ≥ 0; false where rounding leaves a pivot of zero.
+    #[must_use]
+    pub fn factor(&mut self, t: &[f64]) -> bool {
         self.t.copy_from_slice(t);
         for (&at, t) in self.diagonal.iter().zip(t) {
             self.matrix.val_mut()[at] = -(t + self.epsilon);
@@ -93,7 +94,7 @@ impl<'a> System<'a> {
                 MemStack::new(&mut MemBuffer::new(scratch)),
                 Default::default(),
             )
-            .expect("a quasi-definite matrix has an LDLᵀ factorisation");
+            .is_ok()
     }
 
     /// b − A x in twice the working precision, and its size: forces relative to the multipliers, rows relative to u.

@@ -9,6 +9,9 @@ use std::collections::HashSet;
 /// Values below this count as zero, relative to the largest entries of u and λ, and to the data.
 const ZERO: f64 = 2e-12;
 
+/// Exchanges of single rows after which the sets are taken to cycle.
+const MOST_EXCHANGES: usize = 30;
+
 /// The solution on the active set of `p`.
 ///
 /// The equations are solved for the smallest change of `p`. Where rows are dependent, multipliers are not unique; those
@@ -20,9 +23,16 @@ pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
     let mut seen = HashSet::new();
     // The data have size one and the diagonal is one: small values are compared with 1.
     let largest = |v: &[f64]| v.iter().fold(1.0f64, |m, v| m.max(v.abs()));
+    // Rows are exchanged all at once, and one by one, the first of those that are wrong, where that cycles: Murty's
+    // least-index rule.
+    let (mut one_by_one, mut exchanges) = (false, 0);
     loop {
-        if !seen.insert(closed.clone()) {
-            return None; // the sets cycle
+        if !one_by_one && !seen.insert(closed.clone()) {
+            one_by_one = true;
+        }
+        exchanges += usize::from(one_by_one);
+        if exchanges > MOST_EXCHANGES {
+            return None;
         }
         let active: Vec<usize> = (0..ni).filter(|&k| closed[k]).collect();
         let held = active.iter().map(|&k| &qp.below[k]);
@@ -30,7 +40,9 @@ pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
         let sides: Vec<f64> = rows.iter().map(|r| r.rhs).collect();
         let b: Vec<f64> = qp.f.iter().copied().chain(sides).collect();
         let mut system = System::new(qp, rows, epsilon);
-        system.factor(&vec![0.0; ne + active.len()]);
+        if !system.factor(&vec![0.0; ne + active.len()]) {
+            return None;
+        }
         // The multipliers to start from are the smallest part of those of `p` that leads to the right signs: rows
         // implied by equations may carry any force, and large forces that cancel cost digits.
         let mut x = Vec::new();
@@ -70,6 +82,10 @@ pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
             p.closed = active;
             return Some(p);
         }
-        wrong.into_iter().for_each(|k| closed[k] = !closed[k]);
+        let count = if one_by_one { 1 } else { wrong.len() };
+        wrong
+            .into_iter()
+            .take(count)
+            .for_each(|k| closed[k] = !closed[k]);
     }
 }
