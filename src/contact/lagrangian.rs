@@ -225,12 +225,13 @@ impl<'a> AugmentedLagrangian<'a> {
         let (step, status, change) = run.try_set()?;
         self.state.steps += 1;
         let (wrong, tolerance) = (step.wrong, step.tolerance);
-        match trial.best {
-            Some((fewest, of)) if wrong >= fewest && tolerance > FINER * of => {}
-            _ => {
-                trial.best = Some((wrong, tolerance));
-                run.state.progress.begin(wrong);
-            }
+        // A step that is much coarser than the best one does not see all wrong rows: fewer of them are no progress.
+        let better = trial.best.is_none_or(|(fewest, of)| {
+            tolerance <= FINER * of || (wrong < fewest && FINER * tolerance <= of)
+        });
+        if better {
+            trial.best = Some((wrong, tolerance));
+            run.state.progress.begin(wrong);
         }
         self.trial_state = Some(State {
             lambda: run.state.lambda.clone(),

@@ -116,7 +116,9 @@ pub(super) fn bodies(
     for more in exchange(session.comm(), outgoing) {
         sums[more.body].add(&more.sums);
     }
-    let error = error(session, solver, solution, strained)?;
+    let mut error = error(session, solver, solution, strained)?;
+    let sizes = sums.iter().flat_map(ForceSums::all).map(|w| w.size);
+    error.largest = sizes.fold(0.0, f64::max);
     if session.rank() > 0 {
         return Ok(Vec::new());
     }
@@ -171,6 +173,8 @@ const ROUNDING: f64 = 1e-12;
 struct IterationError {
     /// The imbalance that is permitted, relative to the forces.
     relative: f64,
+    /// The largest size of the forces of a kind on a body. A body that bears nothing has rounding of it.
+    largest: f64,
     /// The estimate of ‖u − u*‖_K, times [`SAFETY`].
     energy: f64,
     /// The angle to which directions of rows are known from the digits of the input: multipliers may leave so much of
@@ -215,6 +219,7 @@ fn error(
     let rounding = rows.map(|row| row.rounding).fold(0.0, f64::max);
     Ok(IterationError {
         relative: rtol.clamp(LEAST, 0.1),
+        largest: 0.0,
         input: highest(session.comm(), rounding),
         free: distinct(solver.free_motions().into_iter().flat_map(|m| m.bodies)),
         energy: (SAFETY * known.max(rtol) * size).max(SMALL * *strained),
@@ -248,7 +253,8 @@ fn body_balance(
     if axial {
         rest[0] = 0.0;
     }
-    let size = largest(|w| w.size);
+    let nothing = ROUNDING * error.largest;
+    let size = largest(|w| w.size).max(nothing);
     // Forces through the centre have no lever arm; their rounding must not count as a moment.
     let radius = body.ball().1;
     let lever = largest(|w| w.lever).max(1e-3 * size * radius);
@@ -259,7 +265,7 @@ fn body_balance(
         let iterated = error.energy * along.max(0.0).sqrt();
         relative(
             rest,
-            error.relative * scale + input * largest + ROUNDING * rounding + iterated,
+            error.relative * scale + input * largest + rounding + iterated,
         )
     };
     let (straight, turned) = sums.resistance.split_at(c);
@@ -271,9 +277,10 @@ fn body_balance(
         2 => w.moment[2].into(),
         _ => Amount(w.moment.to_vec()),
     };
-    let of_forces = beyond(norm(rest), (size, size), sums.terms, straight);
+    let rounding = ROUNDING * sums.terms + nothing;
+    let of_forces = beyond(norm(rest), (size, size), rounding, straight);
     let of_moments = turns.map_or(0.0, |rest| {
-        beyond(rest, (lever, size * radius), sums.terms * radius, turned)
+        beyond(rest, (lever, size * radius), rounding * radius, turned)
     });
     let beyond = if (of_forces + of_moments).is_nan() {
         f64::INFINITY

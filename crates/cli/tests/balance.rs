@@ -29,6 +29,7 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
         input: 0.0,
         free: Vec::new(),
         relative: 1e-6,
+        largest: 100.0,
         energy: 0.0,
     };
     let of = |sums: &ForceSums, error: &IterationError| {
@@ -54,6 +55,11 @@ fn what_the_forces_leave_is_a_fault_beyond_the_tolerance() {
         ..error
     };
     assert!(of(&stiff, &loose).beyond < 0.2);
+    // A body that bears nothing has rounding of the forces of others.
+    let mut idle = ForceSums::default();
+    idle.contact.add([0.5, 0.0, 0.0], [1e-15, 0.0, 0.0]);
+    let idle = of(&idle, &error);
+    assert!(idle.beyond < 1e-3 && idle.record.imbalance < 1e-3);
     // Forces that are no numbers are never in balance.
     assert!(of(&sums(f64::NAN), &error).beyond.is_infinite());
 }

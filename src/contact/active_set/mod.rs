@@ -322,7 +322,20 @@ impl Strategy for ActiveSet<'_> {
     }
 
     fn step(&mut self) -> Result<(Step, Proposal)> {
+        let is_last = self.tight;
         let (step, status, change) = self.try_set()?;
+        // The equations of a set on the way may contradict each other, and then have no solution. Springs have one.
+        if status.broke_down() && !is_last {
+            let cold = State::cold(&self.method.dual().stiffness.jump);
+            self.state = State {
+                reference: self.state.reference,
+                steps: self.state.steps,
+                accuracy: self.state.accuracy,
+                safeguarded: true,
+                ..cold
+            };
+            return Ok((step, Proposal::GoOn));
+        }
         let ends = !status.converged() || change == ActiveSetChange::Solved;
         let proposal = if ends {
             Proposal::End(status)

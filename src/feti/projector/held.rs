@@ -39,7 +39,9 @@ impl NaturalCoarse {
     /// free altogether, or several do not move as one. Collective.
     pub fn way(&self, problem: &Problem, stiffness: &Stiffness, motion: &KernelMotion) -> String {
         let comm = stiffness.comm();
-        let bodies = distinct(motion.0.iter().map(|e| self.columns.body(e.0) as usize));
+        let bodies: Vec<usize> = (moved(&self.columns, motion).into_iter())
+            .map(|b| b as usize)
+            .collect();
         // Other free motions of the same bodies belong to the name of this one.
         let mut free = self.free_motions(comm, problem, stiffness);
         free.retain(|f| f.bodies == bodies);

@@ -221,7 +221,7 @@ fn warm(solver: &FetiFeti, rows: &[Row], last: &Solution) -> Option<State> {
         .map(|r| (place(r), (r.multiplier, r.holds())))
         .collect();
     let found = rows.iter().map(|row| {
-        let inequality = row.kind == fetifeti::problem::RowKind::Inequality;
+        let inequality = row.law.is_inequality();
         known.get(&(row.label.members, inequality)).copied()
     });
     let found: Vec<Option<(f64, bool)>> = found.collect();
