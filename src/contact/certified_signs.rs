@@ -13,7 +13,8 @@ use crate::Result;
 use parallel::exchange::{any, max_all};
 
 /// A row is on the wrong side if it pulls, or is violated, by more than this many tolerances, relative to the largest
-/// multiplier or displacement. The energy changes by the square of the pull.
+/// force of rows on an unknown, or the largest displacement. The energy changes by the square of the pull. Multipliers
+/// of rows that depend on each other may be larger than all forces, and are no measure.
 const WRONG: f64 = 10.0;
 
 /// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the
@@ -26,17 +27,32 @@ pub const FURTHER: f64 = 1e-2;
 /// How often the loop goes on. Rows that pull after that are no solution.
 pub const ROUNDS: usize = 3;
 
-/// The state from which the loop must go on; `None` if all rows are on the right side. Collective.
+/// The signs of a certified solution.
+pub enum Signs {
+    /// All rows are on the right side.
+    Right,
+    /// They are with these multipliers, which have the same forces: rows depend on each other.
+    Shared(Vec<f64>),
+    /// Some rows are on the wrong side: the state from which the loop must go on.
+    Wrong(State),
+}
+
+/// Judges the signs of a certified solution. Collective.
 ///
 /// # Errors
 /// PETSc's.
-pub fn wrong_signs(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<State>> {
+pub fn signs(method: &LinearMethod, solution: &LinearSolution) -> Result<Signs> {
     let rtol = method.ksp.tolerances()?.0;
     let dual = method.dual();
     let jump = &dual.stiffness.jump;
     let size = |list: &mut dyn Iterator<Item = &f64>| list.fold(0.0f64, |a, v| a.max(v.abs()));
+    let mut lambda = solution.lambda.clone();
+    let forces = jump.blocks.iter().map(|block| {
+        let forces = block.forces(&lambda[block.rows.clone()]);
+        size(&mut forces.iter())
+    });
     let mut largest = [
-        size(&mut solution.lambda.iter()),
+        forces.fold(0.0, f64::max),
         size(&mut solution.u.iter().flatten()),
     ];
     max_all(dual.comm(), &mut largest);
@@ -44,38 +60,46 @@ pub fn wrong_signs(method: &LinearMethod, solution: &LinearSolution) -> Result<O
     let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
     let (pull, open) = (pull.max(ROUNDING * load), open.max(ROUNDING * give));
     let mut active = jump.active.clone();
+    let mut shared = false;
     for block in &jump.blocks {
-        leave(block, jump, &solution.lambda, pull, &mut active);
+        shared |= leave(block, jump, &mut lambda, pull, &mut active);
     }
     for r in jump.rows_between_bodies() {
         if !solution.active[r] && jump.law[r].violation(solution.gaps[r], false) > open {
             active[r] = true;
         }
     }
-    if !any(dual.comm(), active != jump.active) {
-        return Ok(None);
+    if any(dual.comm(), active != jump.active) {
+        jump.release(&active, &mut lambda);
+        return Ok(Signs::Wrong(State::warm(lambda, &active)));
     }
-    let mut lambda = solution.lambda.clone();
-    jump.release(&active, &mut lambda);
-    Ok(Some(State::warm(lambda, &active)))
+    Ok(match any(dual.comm(), shared) {
+        true => Signs::Shared(lambda),
+        false => Signs::Right,
+    })
 }
 
 /// Takes rows of `block` that pull by more than `pull` out of the set. Rows that depend on each other may carry their
-/// forces with multipliers of both signs: then others that are not negative do as well.
-fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bool]) {
+/// forces with multipliers of both signs: they get others that are not negative, if those do as well. Returns whether
+/// they have.
+fn leave(block: &Block, jump: &Jump, lambda: &mut [f64], pull: f64, active: &mut [bool]) -> bool {
     let start = block.rows.start;
     let held = active[block.rows.clone()].to_vec();
     let pulls = |r: &usize| jump.law[start + r].pull(lambda[start + r]) > pull;
     let on = |r: &usize| held[*r];
     if !(0..held.len()).filter(on).any(|r| pulls(&r)) {
-        return;
+        return false;
     }
     let mut leaves: Vec<usize> = (0..held.len()).filter(on).filter(pulls).collect();
-    let (law, lambda) = (&jump.law[block.rows.clone()], &lambda[block.rows.clone()]);
-    if let Some(others) = block.others(&held, law, lambda) {
-        if others.rest <= pull {
-            leaves.retain(|r| !others.rows.contains(r));
+    let (law, own) = (&jump.law[block.rows.clone()], &lambda[block.rows.clone()]);
+    let others = block.others(&held, law, own);
+    let others = others.filter(|others| others.rest <= pull);
+    if let Some(others) = &others {
+        leaves.retain(|r| !others.rows.contains(r));
+        for (r, value) in &others.multipliers {
+            lambda[start + r] = *value;
         }
     }
     leaves.iter().for_each(|r| active[start + r] = false);
+    others.is_some()
 }

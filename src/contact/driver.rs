@@ -5,10 +5,11 @@
 
 use std::time::Instant;
 
+use super::certified_signs::{self, Signs};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{Observer, State, Step};
 use super::strategy::{Checkpoint, Proposal};
-use super::{certified_signs, farkas, feasible, strategies};
+use super::{farkas, feasible, strategies};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
@@ -51,8 +52,12 @@ fn certified(
         if !certified.status.converged() && certified.status != Status::Certificate {
             return Ok((certified, steps));
         }
-        let Some(mut state) = certified_signs::wrong_signs(method, &certified)? else {
-            return Ok((certified, steps));
+        let mut state = match certified_signs::signs(method, &certified)? {
+            Signs::Right => return Ok((certified, steps)),
+            Signs::Shared(lambda) => {
+                return Ok((method.with_multipliers(certified, lambda)?, steps));
+            }
+            Signs::Wrong(state) => state,
         };
         accuracy *= certified_signs::FURTHER;
         state.accuracy = accuracy;
@@ -68,8 +73,12 @@ fn certified(
         };
     }
     let mut last = method.certify(method.refine(found)?)?;
-    if last.status.converged() && certified_signs::wrong_signs(method, &last)?.is_some() {
-        last.status = Status::Certificate;
+    if last.status.converged() {
+        match certified_signs::signs(method, &last)? {
+            Signs::Right => {}
+            Signs::Shared(lambda) => last = method.with_multipliers(last, lambda)?,
+            Signs::Wrong(_) => last.status = Status::Certificate,
+        }
     }
     Ok((last, steps))
 }

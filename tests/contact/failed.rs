@@ -104,3 +104,45 @@ fn an_estimate_that_fails_leaves_the_tolerance() {
         assert_eq!(rtol, 1e-10);
     });
 }
+
+/// An obstacle and a contact at the same 37 nodes, opposite 17: most of the 74 rows depend on others. Where they carry
+/// forces of 130, multipliers of 1e6 that pull are no solution, and an answer that is called one has its energy.
+#[test]
+fn rows_that_depend_on_each_other_do_not_pull() {
+    const SCENE: &str = "title = \"sides\"\ndimension = 2\n[interface]\ndefault = \"free\"\n\
+        [[body]]\nname = \"fine\"\norigin = [-0.859, 0.184]\nsize = [0.766, 1.219]\nelements = [1, 36]\n\
+        subdomains = [1, 3]\nrho = 1000\nload = -1.662\ndirichlet = { left = 0 }\nspring = { left = 0.294 }\n\
+        [[body]]\nname = \"coarse\"\norigin = [-0.093, 0.071]\nsize = [1.005, 1.347]\nelements = [2, 16]\n\
+        subdomains = [2, 2]\nrho = { checkerboard = [10000, 1], by = \"subdomain\" }\nload = -1.641\n\
+        dirichlet = { right = 0 }\n\
+        [[contact]]\nbodies = [\"fine\", \"coarse\"]\ngap = 0.023\n\
+        [[obstacle]]\nbody = \"fine\"\nside = \"right\"\nbelow = 0.044\n\
+        [[obstacle]]\nbody = \"coarse\"\nside = \"left\"\nabove = 0.144\n";
+    with_session(|session| {
+        let mut solved = 0;
+        for kind in [
+            ContactType::ActiveSet,
+            ContactType::AugmentedLagrangian,
+            ContactType::Smalbe,
+        ] {
+            let scene = Scene::parse("sides.toml", SCENE).expect("a good scene");
+            let problem = scene.substructures(&|_| true).expect("a good scene");
+            let mut settings = Settings::from(MethodSettings::default().rtol(1e-5));
+            settings.contact.kind = kind;
+            let mut solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+            let solution = solver.solve().expect("an end");
+            if solution.converged() {
+                let least = solution.rows().iter().map(|row| row.multiplier);
+                let least = least.fold(0.0, f64::min);
+                assert!(least > -1e-2, "{kind:?}: {least}");
+                assert!(
+                    near(solution.energy, 2.215300775, 1e-5),
+                    "{kind:?}: {}",
+                    solution.energy
+                );
+                solved += 1;
+            }
+        }
+        assert!(solved > 0);
+    });
+}

@@ -118,6 +118,25 @@ impl Block {
         }
     }
 
+    /// Bᵀ λ of the block, by its dofs; `lambda` has an entry per row.
+    pub fn forces(&self, lambda: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.dofs.len()];
+        for (r, l) in lambda.iter().enumerate().filter(|(_, l)| **l != 0.0) {
+            match &self.form {
+                BlockForm::Dense(b) => {
+                    let row = out.iter_mut().enumerate();
+                    row.for_each(|(j, f)| *f += b.get(r, j) * l);
+                }
+                BlockForm::Coupled(coupled) => {
+                    let (dofs, values) = coupled.row(r);
+                    let entries = dofs.iter().zip(values);
+                    entries.for_each(|(&j, v)| out[j as usize] += v * l);
+                }
+            }
+        }
+        out
+    }
+
     /// The bodies of its dofs, increasing.
     pub fn bodies(&self) -> Vec<u32> {
         distinct(self.dofs.iter().map(|dof| dof.body))

@@ -138,6 +138,31 @@ impl LinearMethod {
         })
     }
 
+    /// The solution with other multipliers that have the same forces. Collective.
+    pub(crate) fn with_multipliers(
+        &self,
+        solution: LinearSolution,
+        other: Vec<f64>,
+    ) -> Result<LinearSolution> {
+        let dual = &*self.dual();
+        let lambda = dual.multipliers()?;
+        lambda.array_mut()?.copy_from_slice(&other);
+        let (u, known) = (&solution.u, self.length.get());
+        let certificate = Certificate::new(&self.problem, dual, u, &lambda, known)?;
+        let error = solution.kkt.error;
+        Ok(LinearSolution {
+            lambda: other,
+            gaps: certificate.gaps,
+            kkt: Kkt {
+                error,
+                ..certificate.kkt
+            },
+            energy: certificate.energy,
+            left: certificate.left,
+            ..solution
+        })
+    }
+
     /// ‖u‖_K. Collective.
     pub(super) fn energy_norm(&self, u: &[Vec<f64>]) -> f64 {
         let dual = self.dual();

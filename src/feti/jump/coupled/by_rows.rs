@@ -33,16 +33,15 @@ impl ByRows {
         }
     }
 
-    /// Factors G over these rows, without those that have a pivot below `least`, relative to their diagonal entries.
-    /// Returns these.
-    pub fn hold(&mut self, b: &JumpMatrices, on: &[bool], least: f64) -> Vec<u32> {
+    /// Factors G over these rows, without those that have a pivot of rounding.
+    pub fn hold(&mut self, b: &JumpMatrices, on: &[bool]) {
         let Self { gram, inverse, .. } = self;
         product(gram, &b.rows, &b.columns, inverse, on);
-        let (factor, left) = PartialCholesky::semidefinite(gram, self.symbolic.clone(), least);
+        let (factor, left) =
+            PartialCholesky::semidefinite(gram, self.symbolic.clone(), f64::EPSILON);
         self.kept.copy_from_slice(on);
         left.iter().for_each(|&r| self.kept[r as usize] = false);
         self.factor = Some(factor);
-        left
     }
 
     /// λ ← G⁻¹ λ, zero outside the set.
@@ -69,15 +68,5 @@ impl ByRows {
         lambda.fill(0.0);
         b.rows.add_mul(1.0, &y, lambda);
         self.solve(lambda);
-    }
-
-    /// The combination of rows of the set that row `d` is: G⁻¹ G e_d.
-    pub fn combination(&self, d: u32) -> Vec<f64> {
-        let mut n = vec![0.0; self.kept.len()];
-        let (col, val) = self.gram.row(d as usize);
-        let entries = col.iter().zip(val);
-        entries.for_each(|(&s, v)| n[s as usize] = *v);
-        self.solve(&mut n);
-        n
     }
 }

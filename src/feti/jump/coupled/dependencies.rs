@@ -7,14 +7,11 @@
 //! B_Dᵀ is that of the other rows times Π: as for dense blocks B B_Dᵀ = Π, and B_D y has no part in N. Most sets of
 //! rows are independent by their pattern, and then nothing has to be computed.
 
-use super::by_rows::ByRows;
 use super::pattern::{JumpMatrices, FAINT};
+use super::rank::{self, DependentRow};
 use base::linalg::dense::Dense;
 use base::linalg::semidefinite::Semidefinite;
 use base::linalg::sorted::distinct;
-
-/// With D = 1, a row with a pivot below this fraction of its diagonal entry follows from others. Rounding leaves 1e-15.
-const FOLLOWS: f64 = 1e-12;
 
 /// Entries of N below this are rounding; the largest of each column is at least one.
 const NOTHING: f64 = 1e-11;
@@ -35,18 +32,18 @@ impl Dependencies {
         if !held.contains(&true) {
             return None;
         }
-        let mut plain = ByRows::new(b, &vec![1.0; b.columns.n()]);
-        let left = plain.hold(b, &held, FOLLOWS);
+        let left = rank::dependent(b, &held);
         if left.is_empty() {
             return None;
         }
-        let column = |&d: &u32| {
-            let entries = (0..).zip(plain.combination(d).into_iter().map(|v| -v));
+        let column = |d: &DependentRow| {
+            let entries = d.combination.iter().map(|&(r, v)| (r, -v));
             let mut out: Vec<(u32, f64)> = entries.filter(|e| e.1.abs() > NOTHING).collect();
-            out.push((d, 1.0));
+            out.push((d.row, 1.0));
             out
         };
         let columns: Vec<_> = left.iter().map(column).collect();
+        let left = left.iter().map(|d| d.row).collect();
         let p = columns.len();
         let mut gram = Dense::zeros(p, p);
         let mut full = vec![0.0; on.len()];

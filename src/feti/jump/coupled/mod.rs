@@ -9,6 +9,7 @@ mod by_rows;
 mod dependencies;
 mod elimination;
 mod pattern;
+mod rank;
 pub mod slots;
 
 use base::linalg::dense::Dense;
@@ -90,7 +91,7 @@ impl Coupled {
                 }
             };
             let by_rows = self.by_rows.get_or_insert_with(new);
-            by_rows.hold(&self.b, &kept, f64::EPSILON);
+            by_rows.hold(&self.b, &kept);
         }
     }
 

@@ -285,3 +285,32 @@ fn the_diagonal_is_that_of_dense_products() {
         assert!((q[r] - wanted).abs() <= 1e-14 * wanted, "{r}");
     }
 }
+
+/// The nodes of a fine side, each held by an obstacle and tied to the hat functions of a coarse side: 74 rows on 54
+/// dofs. The rows of few neighbours are nearly dependent without the others, so that pivots in a fixed order are lost.
+#[test]
+fn rows_of_a_fine_side_depend_on_each_other_to_rounding() {
+    let (fine, coarse) = (37, 17);
+    let mut rows: Rows = (0..fine).map(|p| vec![(p as u32, 1.0)]).collect();
+    for p in 0..fine {
+        let at = 1.3 + 14.4 * p as f64 / (fine - 1) as f64;
+        let (left, part) = (at.floor() as usize, at.fract());
+        let hat = |k: usize| (fine + left + k) as u32;
+        rows.push(vec![(p as u32, 1.0), (hat(0), part - 1.0), (hat(1), -part)]);
+    }
+    let b = dense(&rows, fine + coarse);
+    let mut coupled = Coupled::new(&rows, &vec![1.0; fine + coarse]);
+    let all = vec![true; 2 * fine];
+    coupled.hold(&all);
+    let dependencies = coupled.dependencies.as_ref().expect("they depend");
+    let free =
+        2 * fine - scaling::range(&faer::Mat::from_fn(b.rows, b.cols, |i, j| b.get(i, j))).ncols();
+    assert_eq!(dependencies.parts().count(), free);
+    // Π c is a right-hand side that the rows can satisfy: B B_Dᵀ Π c = Π c.
+    let mut wanted = random(2 * fine, 5);
+    dependencies.project(&mut wanted);
+    let mut v = vec![0.0; fine + coarse];
+    coupled.lift(&wanted, &mut v);
+    let missed = distance(&product(&b, &v), &wanted);
+    assert!(missed < 1e-12, "{missed:e}");
+}
