@@ -3,14 +3,11 @@
 use super::anchors::Anchors;
 use super::judge;
 use super::line_search::LineSearchPoint;
-use super::semismooth_newton::{SemismoothNewton, MORE, REDUCTION, STIFFER, STIFFNESS};
+use super::semismooth_newton::SemismoothNewton;
 use crate::feti::krylov::iterate::KrylovRun;
 use crate::status::Status;
 use crate::Result;
 use petsc::{ConvergedReason, Stopped};
-
-/// A residual below this part of the largest so far is rounding.
-const ROUNDING: f64 = 1e-11;
 
 /// The end of a Newton step, how far to go to it, and how exact it is, relative to the reference.
 pub(super) struct Arrival {
@@ -20,9 +17,6 @@ pub(super) struct Arrival {
     pub residual: f64,
     pub tolerance: f64,
 }
-
-/// A step has sent bodies away if their displacements are so many times as large as those of another step.
-const FAR: f64 = 1e3;
 
 /// The begin of a search, and the least displacements of its steps.
 pub(super) struct Begin {
@@ -47,14 +41,14 @@ impl SemismoothNewton<'_> {
     pub(super) fn anchor(&mut self) -> Option<Vec<bool>> {
         let begin = self.begin.as_mut()?;
         begin.length = begin.length.min(self.length);
-        if self.length <= FAR * begin.length {
+        if self.length <= self.tuning.far * begin.length {
             return None;
         }
         let begin = self.begin.take()?;
         self.anchors = Anchors::new(&self.method.dual(), &self.nodes, begin.stiffness);
         self.point = None;
         self.multiplier.fill(0.0);
-        self.stiffness = begin.stiffness / STIFFER;
+        self.stiffness = begin.stiffness / self.tuning.stiffer;
         self.stiffen();
         Some(begin.active)
     }
@@ -62,13 +56,16 @@ impl SemismoothNewton<'_> {
     /// The end of a step, as exact as it has to be to lead downwards. Residuals are relative to that at the beginning.
     /// Collective.
     pub(super) fn anchored(&mut self, anchors: Anchors, begins: bool) -> Result<Arrival> {
-        let method = self.method;
+        let (method, tuning) = (self.method, self.tuning);
         let give = self.nodes.iter().zip(&self.compliance);
         let give: Vec<f64> = give.map(|(node, spring)| node + spring).collect();
-        let mut goal = [REDUCTION * (STIFFNESS / self.stiffness).min(1.0), 0.0];
+        let mut goal = [
+            tuning.reduction * (tuning.stiffness / self.stiffness).min(1.0),
+            0.0,
+        ];
         let (mut iterations, mut first) = (0, None);
         let found = loop {
-            goal[1] = goal[1].max(ROUNDING * self.largest);
+            goal[1] = goal[1].max(tuning.anchored_rounding * self.largest);
             let found = anchors.solve(method, &mut self.at, &give, goal);
             self.anchors = Some(anchors.clone());
             let found = found?;
@@ -76,7 +73,7 @@ impl SemismoothNewton<'_> {
             let [before, after] = found.residuals;
             let first = *first.get_or_insert(before);
             self.largest = self.largest.max(before);
-            let rounding = ROUNDING * self.largest;
+            let rounding = tuning.anchored_rounding * self.largest;
             let dual = method.dual();
             let residual = &mut self.at.residual;
             residual.shift(&dual, &found.place);
@@ -108,7 +105,7 @@ impl SemismoothNewton<'_> {
                     },
                 };
             }
-            goal = [0.0, MORE * after];
+            goal = [0.0, tuning.reduced_again * after];
         };
         Ok(found)
     }

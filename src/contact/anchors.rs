@@ -29,9 +29,6 @@ use base::linalg::sorted::distinct;
 use parallel::exchange::total;
 use petsc::Vec as PetscVec;
 
-/// Factor by which anchors become softer from one minimisation to the next.
-const SOFTER: f64 = 10.0;
-
 /// The anchors. Vectors are of the columns that are known here.
 #[derive(Debug, Clone)]
 pub struct Anchors {
@@ -130,9 +127,9 @@ impl Anchors {
         self.centre.copy_from_slice(place);
     }
 
-    /// Makes the anchors softer.
-    pub fn soften(&mut self) {
-        self.stiffness.iter_mut().for_each(|h| *h /= SOFTER);
+    /// Makes the anchors softer by this factor.
+    pub fn soften(&mut self, factor: f64) {
+        self.stiffness.iter_mut().for_each(|h| *h /= factor);
     }
 
     /// The contribution of the anchors to φ' along a segment at t, −dα (y(t) − H (α(t) − α_k)), and its derivative; α

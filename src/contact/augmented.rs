@@ -14,21 +14,14 @@
 use std::rc::Rc;
 
 use super::force_balance::ForceBalance;
+use super::modes::Face;
 use super::mprgp::BoundedQuadratic;
+use super::settings::ContactSettings;
 use crate::feti::projector::rows::KernelRows;
 use crate::feti::LinearMethod;
 use crate::Result;
 use parallel::exchange::total;
 use petsc::Vec as PetscVec;
-
-/// Number of steps of the power method. The norm is needed to a few per cent only, and ‖A‖ is one of the outer
-/// eigenvalues.
-const POWER_STEPS: usize = 15;
-
-/// ϱ relative to the largest eigenvalue of Pᵀ F P. With a larger ϱ the ascent of μ takes fewer steps (16 bodies in a
-/// row: 83 outer steps with 1, 13 with 10, 6 with 30), but the number of expansion steps, of length 2/ϱ, grows. The
-/// optimum is flat between 5 and 10.
-const PENALTY: f64 = 8.0;
 
 /// The operator of SMALBE's inner problems.
 pub struct Augmented<'a> {
@@ -41,14 +34,17 @@ pub struct Augmented<'a> {
     /// ϱ, which is also ‖A‖.
     pub rho: f64,
     precondition: bool,
-    face: Option<ForceBalance>,
+    /// The face that was entered last, and its balance of forces.
+    pub face: Face<'a>,
+    face_balance: Option<ForceBalance>,
     lambda: PetscVec,
     image: PetscVec,
 }
 
 impl<'a> Augmented<'a> {
     /// The operator on all candidate rows, all of which must hold in the dual operators now. Collective.
-    pub fn new(method: &'a LinearMethod, precondition: bool) -> Result<Augmented<'a>> {
+    pub fn new(method: &'a LinearMethod, settings: &ContactSettings) -> Result<Augmented<'a>> {
+        let tuning = &settings.tuning;
         let comm = method.session.comm();
         let dual = method.dual();
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
@@ -79,12 +75,13 @@ impl<'a> Augmented<'a> {
             g,
             balance,
             rho: 0.0,
-            precondition,
-            face: None,
+            precondition: settings.face_pc,
+            face: Face::of(method),
+            face_balance: None,
             lambda,
             image,
         };
-        a.rho = PENALTY * a.norm()?;
+        a.rho = tuning.penalty * a.norm(tuning.power_steps)?;
         Ok(a)
     }
 
@@ -114,7 +111,7 @@ impl<'a> Augmented<'a> {
     }
 
     /// The largest eigenvalue of Pᵀ F P by the power method. The method gives a lower bound; a few per cent are added.
-    fn norm(&mut self) -> Result<f64> {
+    fn norm(&mut self, steps: usize) -> Result<f64> {
         let method = self.method;
         let comm = method.session.comm();
         let balance = self.balance.clone();
@@ -126,7 +123,7 @@ impl<'a> Augmented<'a> {
             .collect();
         let mut y = vec![0.0; x.len()];
         let mut largest = 0.0;
-        for _ in 0..POWER_STEPS {
+        for _ in 0..steps {
             balance.project(comm, &mut x);
             let square = total(comm, x.iter().map(|x| x * x).sum());
             if square == 0.0 {
@@ -160,17 +157,17 @@ impl BoundedQuadratic for Augmented<'_> {
             return Ok(());
         }
         let session = &self.method.session;
-        self.method.system.set_face(free);
+        self.face.enter(free);
         let mut g = self.g.clone();
         let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
         g.scale_rows(&mask);
         let dual = self.method.dual();
-        self.face = Some(ForceBalance::new(session.comm(), g, &dual.natural));
+        self.face_balance = Some(ForceBalance::new(session.comm(), g, &dual.natural));
         Ok(())
     }
 
     fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()> {
-        let Some(face) = &self.face else {
+        let Some(face) = &self.face_balance else {
             z.copy_from_slice(v);
             return Ok(());
         };

@@ -6,26 +6,12 @@
 
 use super::judge::JudgeSizes;
 use super::state::State;
+use super::tuning::Tuning;
 use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::Result;
 use parallel::exchange::{any, max_all};
-
-/// A row is on the wrong side if it pulls, or is violated, by more than this many tolerances, relative to the largest
-/// force of rows on an unknown, or the largest displacement. The energy changes by the square of the pull. Multipliers
-/// of rows that depend on each other may be larger than all forces, and are no measure.
-const WRONG: f64 = 10.0;
-
-/// Rounding of certified multipliers, beside the loads, too, and of gaps: less than this says nothing, whatever the
-/// tolerance.
-const ROUNDING: f64 = 1e-12;
-
-/// Factor by which the tolerance becomes smaller for the steps that follow.
-pub const FURTHER: f64 = 1e-2;
-
-/// How often the loop goes on. Rows that pull after that are no solution.
-pub const ROUNDS: usize = 3;
 
 /// The signs of a certified solution.
 pub enum Signs {
@@ -41,7 +27,8 @@ pub enum Signs {
 ///
 /// # Errors
 /// PETSc's.
-pub fn signs(method: &LinearMethod, solution: &LinearSolution) -> Result<Signs> {
+pub fn signs(method: &LinearMethod, tuning: &Tuning, solution: &LinearSolution) -> Result<Signs> {
+    let rounding = tuning.certified_rounding;
     let rtol = method.ksp.tolerances()?.0;
     let dual = method.dual();
     let jump = &dual.stiffness.jump;
@@ -57,8 +44,8 @@ pub fn signs(method: &LinearMethod, solution: &LinearSolution) -> Result<Signs> 
     ];
     max_all(dual.comm(), &mut largest);
     let JudgeSizes { load, give } = JudgeSizes::of(&dual, &method.problem);
-    let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
-    let (pull, open) = (pull.max(ROUNDING * load), open.max(ROUNDING * give));
+    let [pull, open] = largest.map(|l| (tuning.certified_wrong * rtol).max(rounding) * l);
+    let (pull, open) = (pull.max(rounding * load), open.max(rounding * give));
     let mut active = jump.active.clone();
     let mut shared = false;
     for block in &jump.blocks {

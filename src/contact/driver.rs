@@ -5,18 +5,16 @@
 
 use std::time::Instant;
 
-use super::certified_signs::{self, Signs};
+use super::certified_signs::{signs, Signs};
+use super::existence::Existence;
 use super::settings::{ContactSettings, ContactType};
 use super::state::{Observer, State, Step};
+use super::strategies;
 use super::strategy::{Checkpoint, Proposal};
-use super::{farkas, feasible, strategies};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
-
-/// Steps of a strategy after which the loop asks whether the rows can carry the load. Most loops have ended before.
-const DOUBT: usize = 20;
 
 /// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
 /// the method hold that held before. Collective.
@@ -30,7 +28,7 @@ pub(crate) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     method.with_rows_kept(|| {
-        feasible::check(&method.problem, &method.dual())?;
+        Existence::new(method, &method.dual(), settings).of_gaps()?;
         certified(method, settings, start, observe)
     })
 }
@@ -45,21 +43,22 @@ fn certified(
     let before = start.map_or(0, |s| s.steps);
     let begin = start.cloned();
     let (mut found, mut steps) = follow(method, settings, settings.kind, begin, observe)?;
+    let tuning = &settings.tuning;
     let mut accuracy = 1.0;
-    for _ in 0..certified_signs::ROUNDS {
+    for _ in 0..tuning.certified_rounds {
         let certified = method.certify(method.refine(found)?)?;
         // A certificate that rows on the wrong side have spoilt is for the loop to mend.
         if !certified.status.converged() && certified.status != Status::Certificate {
             return Ok((certified, steps));
         }
-        let mut state = match certified_signs::signs(method, &certified)? {
+        let mut state = match signs(method, tuning, &certified)? {
             Signs::Right => return Ok((certified, steps)),
             Signs::Shared(lambda) => {
                 return Ok((method.with_multipliers(certified, lambda)?, steps));
             }
             Signs::Wrong(state) => state,
         };
-        accuracy *= certified_signs::FURTHER;
+        accuracy *= tuning.certified_reduction;
         state.accuracy = accuracy;
         state.steps = before + steps.len();
         let kind = ContactType::ActiveSet;
@@ -74,7 +73,7 @@ fn certified(
     }
     let mut last = method.certify(method.refine(found)?)?;
     if last.status.converged() {
-        match certified_signs::signs(method, &last)? {
+        match signs(method, tuning, &last)? {
             Signs::Right => {}
             Signs::Shared(lambda) => last = method.with_multipliers(last, lambda)?,
             Signs::Wrong(_) => last.status = Status::Certificate,
@@ -96,7 +95,7 @@ fn follow(
     let mut strategy = strategies::begin(kind, method, settings, start)?;
     let mut asked = strategy.asks_first();
     if asked {
-        doubt(method, &strategy.state().lambda)?;
+        doubt(method, settings, &strategy.state().lambda)?;
     }
     // The number of steps when the strategy began.
     let mut before = 0;
@@ -114,9 +113,9 @@ fn follow(
         let (step, proposal) = strategy.step()?;
         observe(&step, strategy.state())?;
         steps.push(step);
-        if !asked && steps.len() - before == DOUBT {
+        if !asked && steps.len() - before == settings.tuning.doubt_after {
             asked = true;
-            doubt(method, &strategy.state().lambda)?;
+            doubt(method, settings, &strategy.state().lambda)?;
         }
         if let Proposal::End(status) = proposal {
             break status;
@@ -124,7 +123,7 @@ fn follow(
     };
     let found = strategy.finish(&steps, clock.elapsed().as_secs_f64(), status)?;
     if !found.status.converged() && !asked {
-        doubt(method, &found.lambda)?;
+        doubt(method, settings, &found.lambda)?;
     }
     Ok((found, steps))
 }
@@ -132,8 +131,8 @@ fn follow(
 /// Asks whether there is a solution: returns an error that names bodies which the load pushes away for ever. Few rigid
 /// motions are asked about before the loop, many only here, from the λ where the loop is: where it has failed or does
 /// not end, and before a strategy that would go on for ever. Collective.
-fn doubt(method: &LinearMethod, lambda: &[f64]) -> Result<()> {
+fn doubt(method: &LinearMethod, settings: &ContactSettings, lambda: &[f64]) -> Result<()> {
     let dual = method.dual();
     let load = Loads::new(&method.problem, &dual).kernel;
-    farkas::check_many(&method.problem, &dual, &load, lambda)
+    Existence::new(method, &dual, settings).if_many(&load, lambda)
 }

@@ -2,6 +2,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::tuning::Tuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Residual;
 use crate::feti::operators::dual::Dual;
@@ -10,22 +11,14 @@ use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use parallel::exchange::{max_all, total};
 
-/// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
-/// depends on three others inherits the sum of their jumps.
-const NOISE: f64 = 3.0;
-
-/// Rounding of multipliers, relative to the largest one or to the loads of a subdomain, and of gaps, relative to the
-/// largest displacement.
-pub const ROUNDING: f64 = 1e-14;
-
 /// Sizes beside which forces and displacements of a problem count as small. The largest ones of a solution are not
 /// used: they may be rounding themselves, where bodies touch without force or contact holds all that could move.
 #[derive(Debug, Clone, Copy)]
 pub struct JudgeSizes {
-    /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`ROUNDING`] of it are what sums of
+    /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`Tuning::rounding`] of it are what sums of
     /// loads leave.
     pub load: f64,
-    /// These loads over the largest diagonal entry of K on Γ, the largest of all subdomains. A gap below [`ROUNDING`]
+    /// These loads over the largest diagonal entry of K on Γ, the largest of all subdomains. A gap below [`Tuning::rounding`]
     /// of it changes forces by less than rounding of the loads.
     pub give: f64,
 }
@@ -80,11 +73,12 @@ impl JudgedRows {
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
-        gaps: &[f64],
-        lambda: &[f64],
+        (gaps, lambda): (&[f64], &[f64]),
         (y, sizes): (f64, JudgeSizes),
         open: f64,
+        tuning: &Tuning,
     ) -> JudgedRows {
+        let rounding = tuning.rounding;
         let contact = jump.rows_between_bodies();
         // [largest remaining jump on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
         let mut largest = [0.0f64, 0.0, y, 0.0];
@@ -97,8 +91,8 @@ impl JudgedRows {
         max_all(comm, &mut largest);
         let [jump_left, lambda_max, y_max, contradictory] = largest;
         let JudgeSizes { load, give } = sizes;
-        let lambda_max = lambda_max.max(ROUNDING * load);
-        let y_max = y_max.max(ROUNDING * give);
+        let lambda_max = lambda_max.max(rounding * load);
+        let y_max = y_max.max(rounding * give);
         let mut rows = JudgedRows {
             active: jump.active.clone(),
             contradictory: contradictory > 0.0,
@@ -107,8 +101,10 @@ impl JudgedRows {
             lambda_max,
             y_max,
         };
-        let open = (NOISE * jump_left).max(open * y_max).max(ROUNDING * give);
-        let pull = ROUNDING * lambda_max.max(load);
+        let open = (tuning.noise * jump_left)
+            .max(open * y_max)
+            .max(rounding * give);
+        let pull = rounding * lambda_max.max(load);
         for r in contact.filter(|&r| jump.law[r].is_inequality()) {
             let pulls = jump.law[r].pull(lambda[r]);
             if jump.active[r] && pulls > pull {

@@ -15,42 +15,14 @@
 //! converged.
 
 use super::active_set::{ActiveSet, ActiveSetChange};
-use super::judge;
 use super::semismooth_newton::{NewtonOutcome, SemismoothNewton};
 use super::settings::ContactSettings;
 use super::state::{ActiveSetProgress, State, Step};
 use super::strategy::{Proposal, Strategy};
+use super::tuning::Tuning;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
-
-/// Number of minimisations that end where the set hardly changes any more. Later ones go to the end: then convergence
-/// is proved.
-const EARLY: usize = 8;
-
-/// In a trial, a gap is violated only if it is above this many tolerances, relative to the largest displacement. Rows
-/// without force come and go by rounding.
-const OPEN: f64 = 0.1;
-
-/// Steps without progress after which a trial ends. It also ends if more than a few rows are wrong
-/// ([`SemismoothNewton::few`]).
-const PATIENCE: usize = 1;
-
-/// A minimisation that ends early with more wrong rows than this is not followed by a trial. A trial with no more has
-/// twice the patience.
-const CLOSE: usize = 4;
-
-/// Steps in which the number of wrong rows does not fall, after which a set with few of them is tried before the
-/// minimisation ends. Each trial that fails doubles it. Where springs are stiff, rows without force come and go by
-/// rounding: 2,191 spheres take 97 steps without such trials, and 18 with them.
-const FLICKER: usize = 1;
-
-/// A step of a trial that is this much more exact than the best one counts wrong rows anew: it sees more of them.
-const FINER: f64 = 0.1;
-
-/// Least factor on the tolerance of a trial. It falls by [`FINER`] with each minimum whose set turns out to be wrong:
-/// short waves of multipliers need more digits for their signs than displacements.
-const MOST_DIGITS: f64 = 1e-4;
 
 /// The next step.
 enum NextStep<'a> {
@@ -136,7 +108,7 @@ impl<'a> AugmentedLagrangian<'a> {
         state.safeguarded = true;
         Ok(AugmentedLagrangian {
             rtol: state.accuracy * method.ksp.tolerances()?.0,
-            search: SemismoothNewton::new(method, &mut state)?,
+            search: SemismoothNewton::new(method, settings, &mut state)?,
             method,
             settings,
             state,
@@ -146,7 +118,7 @@ impl<'a> AugmentedLagrangian<'a> {
             round: 0,
             inner: 0,
             progress: ActiveSetProgress::default(),
-            patience: FLICKER,
+            patience: settings.tuning.flicker,
             digits: 1.0,
         })
     }
@@ -179,13 +151,15 @@ impl<'a> AugmentedLagrangian<'a> {
             self.next = NextStep::Minimised { minimal, tried };
             return Ok((step, Proposal::GoOn));
         }
-        let early = self.round < EARLY && self.inner > 1 && came == NewtonOutcome::Near;
+        let early = self.round < self.settings.tuning.early
+            && self.inner > 1
+            && came == NewtonOutcome::Near;
         if wrong <= self.search.few && self.progress.stalled(self.patience) {
             (self.progress, self.patience) = (ActiveSetProgress::default(), 2 * self.patience);
             let trial = self.trial(false, AfterTrial::Soften { early })?;
             self.next = NextStep::Trial(trial);
         } else if early {
-            let tried = wrong <= CLOSE;
+            let tried = wrong <= self.settings.tuning.close;
             self.next = NextStep::Minimised {
                 minimal: false,
                 tried,
@@ -210,7 +184,8 @@ impl<'a> AugmentedLagrangian<'a> {
             ..self.state.clone()
         };
         let mut run = ActiveSet::new(self.method, self.settings, Some(&start))?;
-        run.open = (OPEN * self.rtol).max(judge::ROUNDING);
+        let tuning = &self.settings.tuning;
+        run.open = (tuning.open_in_trial * self.rtol).max(tuning.rounding);
         run.exact = true;
         // A set that is the minimum's is solved to the end at once.
         run.tight = minimal;
@@ -225,9 +200,15 @@ impl<'a> AugmentedLagrangian<'a> {
         let (step, status, change) = run.try_set()?;
         self.state.steps += 1;
         let (wrong, tolerance) = (step.wrong, step.tolerance);
+        let &Tuning {
+            finer,
+            close,
+            trial_patience,
+            ..
+        } = &self.settings.tuning;
         // A step that is much coarser than the best one does not see all wrong rows: fewer of them are no progress.
         let better = trial.best.is_none_or(|(fewest, of)| {
-            tolerance <= FINER * of || (wrong < fewest && FINER * tolerance <= of)
+            tolerance <= finer * of || (wrong < fewest && finer * tolerance <= of)
         });
         if better {
             trial.best = Some((wrong, tolerance));
@@ -244,10 +225,10 @@ impl<'a> AugmentedLagrangian<'a> {
             return Ok((step, Proposal::End(status)));
         }
         let progress = &run.state.progress;
-        let patience = if progress.wrong() > CLOSE {
-            PATIENCE
+        let patience = if progress.wrong() > close {
+            trial_patience
         } else {
-            2 * PATIENCE
+            2 * trial_patience
         };
         let lost = progress.wrong() > self.search.few || run.state.safeguarded;
         let fails = status.broke_down() || lost || progress.stalled(patience);
@@ -271,7 +252,8 @@ impl<'a> AugmentedLagrangian<'a> {
             }
             AfterTrial::Stiffen { minimal } => {
                 if minimal {
-                    self.digits = (FINER * self.digits).max(MOST_DIGITS);
+                    let tuning = &self.settings.tuning;
+                    self.digits = (tuning.finer * self.digits).max(tuning.most_digits);
                 }
                 self.stiffen();
             }

@@ -16,11 +16,9 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::anchors::Anchors;
-use super::line_minimum::line_minimum;
+use super::piecewise_quadratic::line_minimum;
+use super::tuning::Tuning;
 use parallel::exchange::sum_all;
-
-/// A step is long enough if φ falls by this part of what the best length brings.
-const ENOUGH: f64 = 0.1;
 
 /// Displacements as the rows see them, one entry for each owned row.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +55,8 @@ pub struct Penalty<'a> {
     pub compliance: &'a [f64],
     /// The anchors of bodies, if there are any.
     pub anchors: Option<&'a Anchors>,
+    /// How exact the length of a step is.
+    pub tuning: &'a Tuning,
 }
 
 impl Penalty<'_> {
@@ -126,7 +126,7 @@ impl Penalty<'_> {
     }
 
     /// How far to go from one point to another; `None` if φ does not fall. With `beyond` this is the t in (0, ∞) that
-    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`ENOUGH`] of what the minimum in (0, 1]
+    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`Tuning::line_enough`] of what the minimum in (0, 1]
     /// has: the minimum lies at a kink, where rows neither hold nor leave, and Newton steps from kink to kink are
     /// short. Collective.
     pub fn length(
@@ -141,7 +141,7 @@ impl Penalty<'_> {
         }
         let fall = self.change(comm, ends, least);
         let mut t = 1.0;
-        while t > least && self.change(comm, ends, t) > ENOUGH * fall {
+        while t > least && self.change(comm, ends, t) > self.tuning.line_enough * fall {
             t *= 0.5;
         }
         Some(f64::max(t, least))
@@ -154,7 +154,7 @@ impl Penalty<'_> {
         [from, to]: [&LineSearchPoint; 2],
         beyond: bool,
     ) -> Option<f64> {
-        line_minimum(|t| self.slope(comm, from, to, t), beyond)
+        line_minimum(|t| self.slope(comm, from, to, t), beyond, self.tuning)
     }
 }
 

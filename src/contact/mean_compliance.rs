@@ -12,11 +12,9 @@ use crate::feti::LinearMethod;
 use crate::Result;
 use parallel::exchange::total;
 
-/// Number of vectors of signs. The mean is then known to a factor of two, which is what the springs need.
-const SAMPLES: u64 = 4;
-
-/// κ̄ of the inequalities; 1 if there are none. `nodes` is the compliance of the nodes on the owned rows. Collective.
-pub fn mean_compliance(method: &LinearMethod, nodes: &[f64]) -> Result<f64> {
+/// κ̄ of the inequalities, from this number of vectors of signs; 1 if there are none. `nodes` is the compliance of the
+/// nodes on the owned rows. Collective.
+pub fn mean_compliance(method: &LinearMethod, nodes: &[f64], samples: u64) -> Result<f64> {
     let comm = method.session.comm();
     let dual = method.dual();
     let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
@@ -40,8 +38,8 @@ pub fn mean_compliance(method: &LinearMethod, nodes: &[f64]) -> Result<f64> {
     let balance = (natural.r > 0).then(|| ForceBalance::new(comm, g, natural));
     let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
     let mut sum = 0.0;
-    for sample in 0..SAMPLES {
-        let sign = |i: usize| match mixed(SAMPLES * (jump.first + i) as u64 + sample) & 1 {
+    for sample in 0..samples {
+        let sign = |i: usize| match mixed(samples * (jump.first + i) as u64 + sample) & 1 {
             0 => -1.0,
             _ => 1.0,
         };
@@ -64,7 +62,7 @@ pub fn mean_compliance(method: &LinearMethod, nodes: &[f64]) -> Result<f64> {
             .sum();
         sum += total(comm, work);
     }
-    Ok(sum / (SAMPLES as f64 * rows))
+    Ok(sum / (samples as f64 * rows))
 }
 
 /// A number that looks random, of one that does not (SplitMix64). Signs that repeat would be blind for wide bends.

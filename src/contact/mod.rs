@@ -7,38 +7,38 @@
 //! The loop (`driver`) calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are
 //! factored once. There are three strategies (`strategies`): a primal-dual active set (`active_set`); damped Newton
 //! steps on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE
-//! with MPRGP (`smalbe`). A check before the loop finds out whether a solution exists (`feasible`).
+//! with MPRGP (`smalbe`). Sets that they propose are repaired (`repairs`): rows are put back that hold bodies, bodies are placed,
+//! dependent rows agree. Whether there is a solution at all is asked in one place (`existence`).
 
 mod active_set;
 mod anchored;
 mod anchors;
 mod augmented;
 mod certified_signs;
-mod coercivity;
-mod compliant_rows;
 mod driver;
-mod farkas;
-mod feasible;
+mod existence;
 mod force_balance;
 mod judge;
 mod lagrangian;
-mod least_distance;
-mod line_minimum;
 mod line_search;
 mod mean_compliance;
+mod modes;
 mod mprgp;
 mod newton_termination;
+mod piecewise_quadratic;
 mod pull_monitor;
-mod ratio_test;
+mod repairs;
 mod semismooth_newton;
 mod settings;
 mod smalbe;
 mod state;
 mod strategies;
 mod strategy;
-mod unilateral_springs;
+mod tuning;
 
 pub use settings::{ContactSettings, ContactType};
+pub use tuning::Tuning;
+
 pub use state::{ActiveSetProgress, Observer, State, Step};
 
 pub(crate) use driver::solve;

@@ -7,14 +7,9 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use super::tuning::Tuning;
 use crate::Result;
 use parallel::exchange::{lowest, total};
-
-/// Γ: a face is left if the chopped gradient is larger than this many times the free gradient.
-const GAMMA: f64 = 1.0;
-
-/// Curvature below this, relative to ‖A‖, counts as zero.
-const FLAT: f64 = 1e-13;
 
 /// The quadratic function and its bounds; vectors are this rank's part.
 pub trait BoundedQuadratic {
@@ -36,6 +31,8 @@ pub struct Setting<'a> {
     pub fixed: &'a [bool],
     /// Length of the expansion step, at most 2/‖A‖.
     pub length: f64,
+    /// Γ, and which curvature is none.
+    pub tuning: &'a Tuning,
 }
 
 /// The result of a run.
@@ -89,6 +86,7 @@ impl Setting<'_> {
         stop: &mut dyn FnMut(&[f64], f64) -> bool,
         max: usize,
     ) -> Result<MprgpResult> {
+        let (gamma, flatness) = (self.tuning.gamma, self.tuning.flat);
         let n = x.len();
         let mut run = MprgpResult {
             x,
@@ -112,7 +110,7 @@ impl Setting<'_> {
             let reduced: Vec<f64> = (0..n)
                 .map(|i| ((run.x[i] - self.lower[i]) / self.length).min(phi[i]))
                 .collect();
-            if self.dot(&beta, &beta) <= GAMMA * GAMMA * self.dot(&reduced, &phi) {
+            if self.dot(&beta, &beta) <= gamma * gamma * self.dot(&reduced, &phi) {
                 a.apply(&p, &mut ap)?;
                 run.products += 1;
                 let (curvature, along) = (self.dot(&p, &ap), self.dot(&run.g, &p));
@@ -120,8 +118,8 @@ impl Setting<'_> {
                 // Dependent rows have directions without curvature. Their computed curvature is rounding and must not
                 // set the step: x goes to a bound along such a direction if that lowers the function, and does not move
                 // otherwise.
-                let flat = curvature <= FLAT * pp / self.length;
-                if flat && along <= FLAT.sqrt() * (pp * gg).sqrt() {
+                let flat = curvature <= flatness * pp / self.length;
+                if flat && along <= flatness.sqrt() * (pp * gg).sqrt() {
                     break;
                 }
                 let wish = along / curvature;

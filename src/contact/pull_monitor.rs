@@ -3,7 +3,6 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::judge;
 use crate::feti::jump::operator::Jump;
 use crate::feti::krylov::residual::Iterate;
 use crate::Result;
@@ -15,16 +14,19 @@ pub(super) struct PullMonitor<'a> {
     comm: &'a SimpleCommunicator,
     rows: Vec<usize>,
     before: Vec<f64>,
-    /// The largest load.
+    /// Multipliers below this part of the largest one, or of the largest load, are rounding.
+    rounding: f64,
     load: f64,
 }
 
 impl<'a> PullMonitor<'a> {
-    /// The multipliers at the start of the solve; `load` is the [`judge::JudgeSizes::load`].
+    /// The multipliers at the start of the solve; `load` is the
+    /// [`JudgeSizes::load`](super::judge::JudgeSizes::load).
     pub fn new(
         comm: &'a SimpleCommunicator,
         jump: &Jump,
         at: &Iterate,
+        rounding: f64,
         load: f64,
     ) -> Result<PullMonitor<'a>> {
         let all = jump.rows_between_bodies();
@@ -36,6 +38,7 @@ impl<'a> PullMonitor<'a> {
             comm,
             before: rows.iter().map(|&r| lambda[r]).collect(),
             rows,
+            rounding,
             load,
         })
     }
@@ -47,7 +50,7 @@ impl<'a> PullMonitor<'a> {
         let now: Vec<f64> = self.rows.iter().map(|&r| lambda[r]).collect();
         let mut largest = [now.iter().fold(self.load, |a, l| a.max(l.abs()))];
         max_all(self.comm, &mut largest);
-        let pull = judge::ROUNDING * largest[0];
+        let pull = self.rounding * largest[0];
         let mut pairs = self.before.iter().zip(&now);
         let found = pairs.any(|(before, now)| *now < -pull && (now - before).abs() < -now);
         self.before = now;

@@ -11,16 +11,14 @@ use std::time::Instant;
 
 use super::anchored::{Arrival, Begin};
 use super::anchors::Anchors;
-use super::coercivity::restore_coercivity;
-use super::compliant_rows::CompliantRows;
-use super::farkas;
-use super::judge;
-use super::least_distance::least_distance;
+use super::existence::Existence;
 use super::line_search::{LineSearchPoint, Penalty};
 use super::mean_compliance::mean_compliance;
-use super::ratio_test;
-use super::settings::ContactType;
+use super::modes::CompliantRows;
+use super::repairs::Repairs;
+use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, State, Step};
+use super::tuning::Tuning;
 use crate::feti::krylov::iterate::{IterationControl, KrylovRun};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
@@ -29,33 +27,6 @@ use crate::feti::LinearMethod;
 use crate::status::Status;
 use crate::Result;
 use parallel::exchange::total;
-
-/// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes, in
-/// compact bodies. Much softer springs take more minimisations, much stiffer ones more steps in each.
-pub(super) const STIFFNESS: f64 = 30.0;
-
-/// Bodies are compact if they give way at the rows by no more than this many times what the nodes alone do. The springs
-/// of bodies that bend begin as many times softer as these are.
-const COMPACT: f64 = 7.0;
-
-/// Factor by which the springs become stiffer from one minimisation to the next.
-pub(super) const STIFFER: f64 = 3.0;
-
-/// Largest stiffness of the springs, relative as [`STIFFNESS`] is. Beyond it C is lost in the rounding of F.
-const STIFFEST: f64 = 1e9;
-
-/// The set hardly changes if this many rows change, or this part of all.
-const FEW: f64 = 8.0;
-const FEW_OF_ALL: f64 = 0.02;
-
-/// Reduction of the residual in a Newton step of the first minimisation. Springs turn jumps into forces, which are less
-/// exact than the jumps by the stiffness: with stiffer springs the residual falls further.
-pub(super) const REDUCTION: f64 = 1e-3;
-
-/// Factor on the reduction of the residual for another attempt, if the Newton step does not lead downwards.
-pub(super) const MORE: f64 = 1e-3;
-/// Largest number of attempts at a Newton step that leads downwards.
-const ATTEMPTS: usize = 3;
 
 /// Where a Newton step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +44,8 @@ pub enum NewtonOutcome {
 /// The data of the search.
 pub struct SemismoothNewton<'a> {
     pub(super) method: &'a LinearMethod,
+    pub(super) tuning: &'a Tuning,
+    repairs: Repairs<'a>,
     pub(super) springs: CompliantRows<'a>,
     pub(super) at: Iterate,
     /// Whether each owned row is an inequality.
@@ -105,7 +78,12 @@ pub struct SemismoothNewton<'a> {
 
 impl<'a> SemismoothNewton<'a> {
     /// The search on the set of `state`, with μ = 0. Collective.
-    pub fn new(method: &'a LinearMethod, state: &mut State) -> Result<SemismoothNewton<'a>> {
+    pub fn new(
+        method: &'a LinearMethod,
+        settings: &'a ContactSettings,
+        state: &mut State,
+    ) -> Result<SemismoothNewton<'a>> {
+        let tuning = &settings.tuning;
         let comm = method.session.comm();
         let dual = method.dual();
         let stiffness = &dual.stiffness;
@@ -117,18 +95,21 @@ impl<'a> SemismoothNewton<'a> {
         let loads = Loads::new(&method.problem, &dual);
         let mut at = Iterate::new(&dual, loads)?;
         if state.reference == 0.0 {
-            farkas::check_few(&method.problem, &dual, &at.loads.kernel)?;
-            farkas::check_held(&method.problem, &dual, &at.loads.kernel)?;
+            let existence = Existence::new(method, &dual, settings);
+            existence.if_few(&at.loads.kernel)?;
+            existence.if_all_hold(&at.loads.kernel)?;
             at.begin(&dual)?;
             state.reference = at.evaluate_projected(&dual)?;
         }
         at.lambda.array_mut()?.copy_from_slice(&state.lambda);
         // Whole minimisations earlier, so that about the same softness gives the same springs.
-        let softer = mean_compliance(method, &nodes)? / COMPACT;
-        let first = STIFFNESS / STIFFER.powf(softer.max(1.0).log(STIFFER).round());
+        let softer =
+            mean_compliance(method, &nodes, tuning.compact_samples as u64)? / tuning.compact;
+        let minimisations = softer.max(1.0).log(tuning.stiffer).round();
+        let first = tuning.stiffness / tuning.stiffer.powf(minimisations);
         let mut search = SemismoothNewton {
             at,
-            stiffness: first / STIFFER,
+            stiffness: first / tuning.stiffer,
             compliance: Vec::new(),
             multiplier: vec![0.0; counts.len()],
             counts,
@@ -140,10 +121,12 @@ impl<'a> SemismoothNewton<'a> {
             begins: true,
             length: 0.0,
             n_rows: stiffness.jump.n_global,
-            few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)) as usize,
+            few: tuning.few.max(tuning.few_of_all * total(comm, mine as f64)) as usize,
             last: None,
             least: method.least_residual(),
             springs: CompliantRows::of(method),
+            repairs: Repairs::new(method, settings),
+            tuning,
             method,
         };
         drop(dual);
@@ -157,6 +140,7 @@ impl<'a> SemismoothNewton<'a> {
             multiplier: &self.multiplier,
             compliance: &self.compliance,
             anchors: self.anchors.as_ref(),
+            tuning: self.tuning,
         }
     }
 
@@ -178,10 +162,10 @@ impl<'a> SemismoothNewton<'a> {
         let s = self.penalty().pull(point);
         if let Some(anchors) = &mut self.anchors {
             anchors.follow(&point.motion[0]);
-            anchors.soften();
+            anchors.soften(self.tuning.softer);
         }
         self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
-        ratio_test::ratio_test_descent(&self.method.dual().stiffness.jump, &mut self.multiplier);
+        self.repairs.agree(&mut self.multiplier);
         state.active = self.set(&self.multiplier);
     }
 
@@ -189,7 +173,7 @@ impl<'a> SemismoothNewton<'a> {
     /// `state`.
     pub fn stiffen(&mut self) {
         self.begins = true;
-        self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
+        self.stiffness = (self.tuning.stiffer * self.stiffness).min(self.tuning.stiffest);
         let of = |(counts, node): (&bool, &f64)| {
             if *counts {
                 node / self.stiffness
@@ -217,7 +201,7 @@ impl<'a> SemismoothNewton<'a> {
             None => -self.compliance[i],
         };
         let load = &self.at.loads.kernel;
-        restore_coercivity(&self.method.problem, &dual, active, &score, load)
+        self.repairs.hold(&dual, active, &score, load)
     }
 
     /// The right-hand side of the rows: c − C μ. Rows that hold without a force of their own, s ≤ 0, are springs from
@@ -314,22 +298,22 @@ impl<'a> SemismoothNewton<'a> {
         (active, restored): (&[bool], usize),
         begins: bool,
     ) -> Result<Arrival> {
-        let method = self.method;
+        let (method, tuning) = (self.method, self.tuning);
         let first = {
             let dual = method.dual();
             self.at.begin(&dual)?;
             self.at.evaluate_projected(&dual)?
         };
         let mut run: Option<KrylovRun> = None;
-        let softer = (STIFFNESS / self.stiffness).min(1.0);
-        let mut reduction = REDUCTION * softer;
+        let softer = (tuning.stiffness / self.stiffness).min(1.0);
+        let mut reduction = tuning.reduction * softer;
         let mut length = None;
         let mut tolerance = first;
         let (mut end, mut centred) = (None, false);
-        for _ in 0..ATTEMPTS + usize::from(restored > 0) {
+        for _ in 0..tuning.attempts + usize::from(restored > 0) {
             let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
             let least = state.accuracy * least;
-            tolerance = (reduction * first).max(MORE * softer * least);
+            tolerance = (reduction * first).max(tuning.reduced_again * softer * least);
             tolerance = tolerance.max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control, None)?;
@@ -350,7 +334,7 @@ impl<'a> SemismoothNewton<'a> {
                 self.at.loads.jumps = Some(self.jumps(active, true));
                 self.at.begin(&method.dual())?;
             } else {
-                reduction *= MORE;
+                reduction *= tuning.reduced_again;
             }
             self.at.evaluate_projected(&method.dual())?;
         }
@@ -385,11 +369,7 @@ impl<'a> SemismoothNewton<'a> {
         let residual = &mut self.at.residual;
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
         residual.add_rigid_motion(&dual)?;
-        let mut gap = judge::all_gaps(&dual, residual)?;
-        if let Some(alpha) = least_distance(&dual, &gap) {
-            residual.shift(&dual, &alpha);
-            gap = judge::all_gaps(&dual, residual)?;
-        }
+        let gap = self.repairs.place(&dual, residual)?;
         self.length = residual.length(&dual);
         Ok(LineSearchPoint {
             gap,

@@ -1,5 +1,6 @@
 //! Options of the contact loop (prefix `fetifeti_contact_`).
 
+use super::tuning::Tuning;
 use crate::{Error, Result};
 use petsc::{named, Options};
 
@@ -34,6 +35,8 @@ pub struct ContactSettings {
     pub inner_rtol: f64,
     /// `fetifeti_contact_face_pc`: whether M⁻¹ preconditions SMALBE inside the free face.
     pub face_pc: bool,
+    /// The constants of the loop. They have no options.
+    pub tuning: Tuning,
 }
 
 impl Default for ContactSettings {
@@ -43,6 +46,7 @@ impl Default for ContactSettings {
             max_it: 200,
             inner_rtol: 0.1,
             face_pc: true,
+            tuning: Tuning::DEFAULT,
         }
     }
 }

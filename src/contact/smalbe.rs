@@ -17,39 +17,17 @@ use mpi::topology::SimpleCommunicator;
 
 use super::active_set::ActiveSet;
 use super::augmented::Augmented;
-use super::judge;
 use super::mprgp::{BoundedQuadratic, Setting};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, ActiveSetProgress, State, Step};
 use super::strategy::{Checkpoint, Proposal, Strategy};
+use super::tuning::Tuning;
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
 use parallel::exchange::{any, total};
-
-/// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
-const ETA: f64 = 0.1;
-/// M₀: the projected gradient that is allowed per violated balance, relative to ϱ.
-const M_START: f64 = 0.1;
-/// Factor by which M shrinks when the Lagrangian does not grow enough.
-const M_SHRINK: f64 = 0.1;
-/// Largest number of products with A in one inner problem.
-const PRODUCTS: usize = 2_000;
-/// Number of steps without a change after which a set is tried.
-const PATIENCE: usize = 3;
-/// Number of times that the search goes on from the end of such a trial. Later it keeps its own iterates, for which
-/// convergence is proved.
-const JUMPS: usize = 4;
-/// In a trial, a gap is violated only if it is above this many tolerances, relative to the largest displacement. Rows
-/// without force come and go by rounding.
-const OPEN: f64 = 0.1;
-/// Number of steps that change no row and do not halve the residual after which SMALBE gives up. Where bodies differ in
-/// stiffness by many orders μ would take thousands.
-const STALLED: usize = 20;
-/// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
-const CLOSING_STEPS: usize = 5;
 
 /// The strategy.
 pub(super) struct Smalbe<'a> {
@@ -118,12 +96,13 @@ impl<'a> Smalbe<'a> {
         };
         // A set that stays is tried even if μ is still far from its limit. The ascent of μ is slow where stiff bodies
         // hang on soft ones.
-        self.promises = settled || self.unchanged == PATIENCE;
+        self.promises = settled || self.unchanged == self.settings.tuning.smalbe_patience;
         Ok(step)
     }
 
     /// A trial of the set of the state. Collective.
     fn trial(&mut self) -> Result<ActiveSet<'a>> {
+        self.search.a.face.leave();
         let start = State {
             safeguarded: false,
             progress: ActiveSetProgress::default(),
@@ -131,7 +110,8 @@ impl<'a> Smalbe<'a> {
         };
         let mut run = ActiveSet::new(self.method, self.settings, Some(&start))?;
         self.state.reference = run.state.reference;
-        run.open = (OPEN * self.rtol).max(judge::ROUNDING);
+        let tuning = &self.settings.tuning;
+        run.open = (tuning.open_in_trial * self.rtol).max(tuning.rounding);
         Ok(run)
     }
 
@@ -140,7 +120,7 @@ impl<'a> Smalbe<'a> {
         if self.settled {
             self.accuracy = (0.1 * self.accuracy).max(1e-13);
         }
-        if self.jumps < JUMPS {
+        if self.jumps < self.settings.tuning.jumps {
             self.jumps += 1;
             self.search.restart(self.method.session.comm(), run)?;
         }
@@ -161,7 +141,7 @@ impl Strategy for Smalbe<'_> {
     }
 
     fn checkpoint(&self) -> Checkpoint {
-        if self.trial.is_none() && self.best.1 >= STALLED {
+        if self.trial.is_none() && self.best.1 >= self.settings.tuning.stalled {
             Checkpoint::HandOver
         } else {
             Checkpoint::Update
@@ -169,7 +149,8 @@ impl Strategy for Smalbe<'_> {
     }
 
     fn step(&mut self) -> Result<(Step, Proposal)> {
-        if let Some((run, _)) = self.trial.take_if(|(_, steps)| *steps == CLOSING_STEPS) {
+        let closing = self.settings.tuning.closing_steps;
+        if let Some((run, _)) = self.trial.take_if(|(_, steps)| *steps == closing) {
             self.go_on(&run)?;
         }
         if std::mem::take(&mut self.promises) {
@@ -186,14 +167,17 @@ impl Strategy for Smalbe<'_> {
     }
 
     fn finish(
-        self: Box<Self>,
+        mut self: Box<Self>,
         steps: &[Step],
         seconds: f64,
         status: Status,
     ) -> Result<LinearSolution> {
-        let run = match self.trial {
+        let run = match self.trial.take() {
             Some((run, _)) => run,
-            None => ActiveSet::new(self.method, self.settings, Some(&self.state))?,
+            None => {
+                self.search.a.face.leave();
+                ActiveSet::new(self.method, self.settings, Some(&self.state))?
+            }
         };
         run.end(steps, seconds, status)
     }
@@ -201,6 +185,7 @@ impl Strategy for Smalbe<'_> {
 
 /// The dual problem in shifted and scaled variables, and the state of the search.
 struct SmalbeIteration<'a> {
+    tuning: &'a Tuning,
     a: Augmented<'a>,
     /// Pᵀ S (d − F λ̃).
     b: Vec<f64>,
@@ -221,7 +206,7 @@ struct SmalbeIteration<'a> {
 impl<'a> SmalbeIteration<'a> {
     fn new(
         method: &'a LinearMethod,
-        settings: &ContactSettings,
+        settings: &'a ContactSettings,
         state: &State,
     ) -> Result<SmalbeIteration<'a>> {
         let (session, problem) = (&method.session, &method.problem);
@@ -231,7 +216,7 @@ impl<'a> SmalbeIteration<'a> {
             (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
         };
         method.set_active(&all)?;
-        let mut a = Augmented::new(method, settings.face_pc)?;
+        let mut a = Augmented::new(method, settings)?;
         let dual = method.dual();
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(problem, &dual);
@@ -286,7 +271,8 @@ impl<'a> SmalbeIteration<'a> {
             size,
             shift,
             lower,
-            m: M_START,
+            m: settings.tuning.m_start,
+            tuning: &settings.tuning,
             lagrangian: f64::NEG_INFINITY,
         })
     }
@@ -321,7 +307,7 @@ impl<'a> SmalbeIteration<'a> {
         accuracy: f64,
     ) -> Result<(Step, bool)> {
         let clock = Instant::now();
-        let (rho, size) = (self.a.rho, self.size);
+        let (rho, size, tuning) = (self.a.rho, self.size, self.tuning);
         let mut b = self.b.clone();
         self.a.balance.add(-1.0, &self.mu, &mut b); /*    b − G μ         */
         let balance = self.a.balance.clone();
@@ -330,22 +316,23 @@ impl<'a> SmalbeIteration<'a> {
             lower: &self.lower,
             fixed: &self.fixed,
             length: 1.9 / rho,
+            tuning,
         };
         let floor = accuracy * size;
         let m = self.m;
         let mut stop = |x: &[f64], gradient: f64| {
             let allowed = m * rho * balance.violation(comm, x);
-            gradient <= allowed.min(ETA * size) || gradient <= 0.5 * floor
+            gradient <= allowed.min(tuning.eta * size) || gradient <= 0.5 * floor
         };
         let start = std::mem::take(&mut self.x);
-        let run = setting.minimise(&mut self.a, &b, start, &mut stop, PRODUCTS)?;
+        let run = setting.minimise(&mut self.a, &b, start, &mut stop, tuning.products)?;
         let violation = balance.violation(comm, &run.x);
         let gradient = setting.projected_gradient(&run.x, &run.g);
         // L = ½ xᵀA x − bᵀx with A x = g + b
         let terms = run.x.iter().zip(&run.g).zip(&b);
         let value = total(comm, terms.map(|((x, g), b)| 0.5 * x * (g - b)).sum());
         if value < self.lagrangian + 0.5 * rho * violation * violation {
-            self.m *= M_SHRINK;
+            self.m *= tuning.m_shrink;
         }
         self.lagrangian = value;
         let mut c = balance.forces(comm, &run.x);

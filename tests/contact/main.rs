@@ -16,5 +16,6 @@ mod qp_reference;
 mod random;
 mod random_reference;
 mod reference;
+mod tuning;
 mod wave;
 mod zero;

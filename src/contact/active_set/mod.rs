@@ -15,13 +15,13 @@ mod next_set;
 
 use std::time::Instant;
 
-use super::coercivity::restore_coercivity;
+use super::existence::Existence;
 use super::judge::JudgeSizes;
 use super::pull_monitor::PullMonitor;
+use super::repairs::Repairs;
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, State, Step};
 use super::strategy::{Checkpoint, Proposal, Strategy};
-use super::{farkas, judge};
 use crate::feti::krylov::iterate::{IterateMonitor, IterationControl, KrylovRun};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, ROUNDING};
@@ -30,26 +30,6 @@ use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::status::Status;
 use crate::Result;
 use petsc::{Stopped, Vec as PetscVec};
-
-/// Loose inner problems may have misled the sets if there was no progress for this many steps and more than [`MANY`]
-/// rows are wrong.
-const MISLED: usize = 2;
-const MANY: usize = 8;
-
-/// Factor by which inner problems are then solved more exactly. With a smaller one they take iterations that save no
-/// steps.
-const LESS_MISLED: f64 = 0.1;
-
-/// Factor by which all inner problems are solved more exactly in a run that tries the set which the augmented
-/// Lagrangian has found.
-const EXACT: f64 = 1e-2;
-
-/// A step is solved to the end if its residual has to fall by no more than this.
-const NEAR: f64 = 3e-3;
-
-/// Largest jump on the rows that hold, relative to the residual in V. That residual does not contain the part of the
-/// jump that rigid motions close.
-const CLOSED: f64 = 1e3;
 
 /// The verdict after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +44,7 @@ pub(super) enum ActiveSetChange {
 pub(super) struct ActiveSet<'a> {
     method: &'a LinearMethod,
     settings: &'a ContactSettings,
+    repairs: Repairs<'a>,
     pub state: State,
     at: Iterate,
     /// Whether the residual of `at` belongs to its λ and the set that holds.
@@ -105,7 +86,7 @@ impl<'a> ActiveSet<'a> {
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         // Who gives a reference has asked for these loads before.
         if state.reference == 0.0 {
-            farkas::check_few(problem, &dual, &loads.kernel)?;
+            Existence::new(method, &dual, settings).if_few(&loads.kernel)?;
         }
         let n_rows = jump.n_global;
         let sizes = JudgeSizes::of(&dual, problem);
@@ -114,11 +95,12 @@ impl<'a> ActiveSet<'a> {
         let mut run = ActiveSet {
             method,
             settings,
+            repairs: Repairs::new(method, settings),
             fresh: false,
             tight: false,
             watched: true,
             exact: false,
-            open: judge::ROUNDING,
+            open: settings.tuning.rounding,
             length: 0.0,
             state,
             at,
@@ -134,7 +116,7 @@ impl<'a> ActiveSet<'a> {
             let dual = method.dual();
             let (active, lambda) = (&mut run.state.active, &run.state.lambda);
             let load = &run.at.loads.kernel;
-            restore_coercivity(problem, &dual, active, &|r| lambda[r], load)?;
+            run.repairs.hold(&dual, active, &|r| lambda[r], load)?;
         }
         if run.state.reference == 0.0 {
             run.state.reference = run.reference()?;
@@ -154,7 +136,7 @@ impl<'a> ActiveSet<'a> {
         let all = State::cold(&method.dual().stiffness.jump).active;
         method.set_active(&all)?;
         let dual = method.dual();
-        farkas::check_held(&method.problem, &dual, &self.at.loads.kernel)?;
+        Existence::new(method, &dual, self.settings).if_all_hold(&self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
         self.at.begin(&dual)?;
         self.at.evaluate_projected(&dual)
@@ -162,11 +144,11 @@ impl<'a> ActiveSet<'a> {
 
     /// Reduction of the residual while the set changes.
     fn reduction(&self) -> f64 {
-        let progress = &self.state.progress;
-        let misled = progress.stalled(MISLED) && progress.wrong() > MANY;
+        let (progress, tuning) = (&self.state.progress, &self.settings.tuning);
+        let misled = progress.stalled(tuning.misled_after) && progress.wrong() > tuning.misled_rows;
         let factor = match (self.exact, misled) {
-            (true, _) => EXACT,
-            (false, true) => LESS_MISLED,
+            (true, _) => tuning.exact_reduction,
+            (false, true) => tuning.misled_reduction,
             (false, false) => 1.0,
         };
         factor * self.settings.inner_rtol
@@ -204,7 +186,7 @@ impl<'a> ActiveSet<'a> {
         let target = self.target()?;
         let reduced = self.reduction() * first;
         // A last reduction is taken in one go: to begin anew in its middle costs more than it may save.
-        let tight = self.tight || target >= NEAR * first;
+        let tight = self.tight || target >= self.settings.tuning.near * first;
         let tolerance = match (tight, self.exact) {
             (true, false) => target,
             // Multipliers of springs are those of the rows only up to the compliance. Between stiff bodies the
@@ -217,6 +199,7 @@ impl<'a> ActiveSet<'a> {
             session.comm(),
             &method.dual().stiffness.jump,
             &self.at,
+            self.settings.tuning.rounding,
             self.sizes.load,
         )?;
         let mut look = |lambda: &PetscVec| pulling.lasts(lambda);
@@ -275,9 +258,10 @@ impl<'a> ActiveSet<'a> {
     /// Whether the jumps that rigid motions leave are as small as the residual, or rounding. The interface of a soft
     /// body on a stiff one hardly moves, but its forces are rounded like those inside. Collective.
     fn closed(&self, jump_left: f64, target: f64) -> bool {
-        let give = self.sizes.give;
-        let beyond =
-            |length: f64| jump_left > CLOSED * target + 1e3 * judge::ROUNDING * length.max(give);
+        let (give, tuning) = (self.sizes.give, &self.settings.tuning);
+        let beyond = |length: f64| {
+            jump_left > tuning.closed * target + 1e3 * tuning.rounding * length.max(give)
+        };
         // It takes a solve to know how far the inside moves: only where the interface does not settle it.
         !beyond(self.length) || {
             let inside = self.at.loads.largest_inside(&self.method.dual());

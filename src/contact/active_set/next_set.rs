@@ -1,15 +1,10 @@
 //! After a step of the active-set method: how its rows are judged, and which set comes next.
 
 use super::{ActiveSet, ActiveSetChange};
-use crate::contact::coercivity::restore_coercivity;
 use crate::contact::judge;
-use crate::contact::least_distance::least_distance;
 use crate::feti::operators::dual::Dual;
 use crate::Result;
 use parallel::exchange::any;
-
-/// Steps without progress after which the loop hands over.
-const PATIENCE: usize = 4;
 
 /// The next set, and the observations that led to it.
 pub(super) struct NextSet {
@@ -31,22 +26,20 @@ impl ActiveSet<'_> {
         let jump = &dual.stiffness.jump;
         self.at.residual.add_rigid_motion(dual)?;
         self.placed = true;
-        self.gaps = judge::all_gaps(dual, &self.at.residual)?;
-        // Bodies that nothing holds are moved to where no row is violated.
-        if let Some(alpha) = least_distance(dual, &self.gaps) {
-            self.at.residual.shift(dual, &alpha);
-            self.gaps = judge::all_gaps(dual, &self.at.residual)?;
-        }
+        self.gaps = self.repairs.place(dual, &mut self.at.residual)?;
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
-        let sizes = (self.at.residual.largest(), self.sizes);
-        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, sizes, self.open);
+        let (sizes, tuning) = (
+            (self.at.residual.largest(), self.sizes),
+            &self.settings.tuning,
+        );
+        let judged = judge::JudgedRows::new(comm, jump, (gaps, &lambda), sizes, self.open, tuning);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         let load = &self.at.loads.kernel;
         let score = |r: usize| judged.score(lambda[r], gaps[r]);
         let mut active = judged.active.clone();
-        let restored = restore_coercivity(&self.method.problem, dual, &mut active, &score, load)?;
+        let restored = self.repairs.hold(dual, &mut active, &score, load)?;
         Ok(NextSet {
             active,
             wrong,
@@ -85,7 +78,7 @@ impl ActiveSet<'_> {
         }
         // A set that stays after a loose step says nothing yet: the exact step has the word.
         state.progress.note(next.wrong);
-        state.safeguarded = state.progress.stalled(PATIENCE);
+        state.safeguarded = state.progress.stalled(self.settings.tuning.patience);
         Ok(ActiveSetChange::GoOn)
     }
 }

@@ -24,7 +24,14 @@ fn next<const N: usize>(
     with_session(move |session| {
         let sizes = (1.0, JudgeSizes { load, give: 0.0 });
         let comm = session.comm();
-        let judged = JudgedRows::new(comm, &jump(&active), &gaps, &lambda, sizes, ROUNDING);
+        let judged = JudgedRows::new(
+            comm,
+            &jump(&active),
+            (&gaps, &lambda),
+            sizes,
+            Tuning::DEFAULT.rounding,
+            &Tuning::DEFAULT,
+        );
         assert!(!judged.contradictory);
         (judged.active.clone(), judged.wrong(comm))
     })

@@ -30,6 +30,7 @@ fn the_minimum_along_the_step() {
             multiplier: &[0.0, 0.1, 0.0, 2.0],
             compliance: &[0.5, 0.01, 1e-6, 0.3],
             anchors: None,
+            tuning: &Tuning::DEFAULT,
         };
         for from in [-5.0, 0.0, 1.2] {
             let (a, b) = (point(from, &gaps), point(4.0, &gaps));
@@ -63,6 +64,7 @@ fn a_step_to_the_minimum_has_its_full_length() {
             multiplier: &[0.0],
             compliance: &[0.5],
             anchors: None,
+            tuning: &Tuning::DEFAULT,
         };
         // u² − 8u + (u − 1)₊² has its minimum at 2.5.
         let (a, b) = (point(0.0, &[1.0]), point(2.5, &[1.0]));
@@ -80,6 +82,7 @@ fn a_step_may_go_beyond_its_end() {
             multiplier: &[0.0],
             compliance: &[0.5],
             anchors: None,
+            tuning: &Tuning::DEFAULT,
         };
         let start = point(0.0, &[1.0]);
         for end in [1e-6, 0.1, 1.0, 2.0, 2.5, 3.0] {
@@ -101,6 +104,7 @@ fn rows_that_do_not_count_change_nothing() {
                 multiplier: &[0.0, 0.0],
                 compliance,
                 anchors: None,
+                tuning: &Tuning::DEFAULT,
             };
             let from = LineSearchPoint {
                 gap: vec![-1.0, 7.0],
@@ -132,6 +136,7 @@ fn anchors_count_along_the_step() {
             multiplier: &[0.0, 0.3],
             compliance: &[0.5, 0.1],
             anchors: Some(&anchors),
+            tuning: &Tuning::DEFAULT,
         };
         // Any λ with y = e − λ has K u = f − Bᵀλ − y.
         let point = |u: [f64; 2], force: [f64; 2]| LineSearchPoint {

@@ -40,6 +40,7 @@ fn minimised<const N: usize>(
             lower: &lower,
             fixed: &fixed,
             length: 0.475,
+            tuning: &Tuning::DEFAULT,
         };
         let mut plain = Plain(a, vec![true; N]);
         let mut stop = |_: &[f64], gradient: f64| gradient < 1e-12;

@@ -6,7 +6,8 @@
 
 use mpi::traits::Communicator;
 
-use super::farkas::{pushed_away, BALANCE, NEARLY};
+use crate::contact::existence::pushed_away;
+use crate::contact::tuning::Tuning;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::{KernelLoad, LoadWork};
 use crate::feti::projector::by_column::ByColumn;
@@ -20,9 +21,6 @@ use base::linalg::union_find::UnionFind;
 use bytemuck::{Pod, Zeroable};
 use parallel::parcels::Parcels;
 
-/// Work of a row on a motion below this, relative to the largest that it could be, is none.
-const AGAINST: f64 = 1e-8;
-
 /// Puts rows back into `active` until the active rows hold all rigid motions that the load drives. For each
 /// driven motion it takes the row with the largest `score` among those that oppose it, those with the largest first.
 /// Returns the number of rows that were put back. Collective.
@@ -35,6 +33,7 @@ pub fn restore_coercivity(
     active: &mut [bool],
     score: &dyn Fn(usize) -> f64,
     load: &KernelLoad,
+    tuning: &Tuning,
 ) -> Result<usize> {
     let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
     if natural.r == 0 {
@@ -44,7 +43,7 @@ pub fn restore_coercivity(
     if gram.unheld.is_empty() {
         return Ok(0);
     }
-    let mut free = Free::new(gram.unheld.clone(), &natural.columns);
+    let mut free = Free::new(gram.unheld.clone(), &natural.columns, tuning);
     drop(gram);
     let (g, known) = (&natural.all, natural.known());
     // No other columns come into motions that are combined.
@@ -64,7 +63,7 @@ pub fn restore_coercivity(
             let size: f64 = values.iter().map(|x| x.abs()).sum();
             for (d, work) in by_column.works(columns, values) {
                 let work = jump.law[i].resistance(work);
-                let against = work > AGAINST * size * driven[d].largest;
+                let against = work > tuning.against * size * driven[d].largest;
                 if against && best[d].is_none_or(|(least, _)| score(i) > least) {
                     best[d] = Some((score(i), i));
                 }
@@ -133,7 +132,7 @@ pub fn restore_coercivity(
             }
         }
     }
-    pushed_away(problem, dual, &rest, NEARLY * load.largest)?;
+    pushed_away(problem, dual, &rest, tuning.nearly_balanced * load.largest)?;
     Ok(restored)
 }
 
@@ -170,7 +169,8 @@ struct Driven {
 }
 
 /// A basis of the motions that nothing holds, in groups of bodies that move together.
-struct Free {
+struct Free<'a> {
+    tuning: &'a Tuning,
     motions: Vec<KernelMotion>,
     /// The largest coefficient of each motion.
     largest: Vec<f64>,
@@ -181,8 +181,8 @@ struct Free {
     groups: UnionFind,
 }
 
-impl Free {
-    fn new(motions: Vec<KernelMotion>, columns: &KernelColumns) -> Free {
+impl<'a> Free<'a> {
+    fn new(motions: Vec<KernelMotion>, columns: &KernelColumns, tuning: &'a Tuning) -> Free<'a> {
         let of = |motion: &KernelMotion| -> Vec<u32> {
             let mut bodies: Vec<u32> = motion.0.iter().map(|e| columns.body(e.0)).collect();
             bodies.dedup();
@@ -203,6 +203,7 @@ impl Free {
             }
         }
         Free {
+            tuning,
             largest: motions.iter().map(KernelMotion::largest).collect(),
             motions,
             bodies,
@@ -213,7 +214,7 @@ impl Free {
 
     /// The work of the load on a motion; `None` if it is rounding.
     fn gain(&self, m: usize, load: &LoadWork) -> Option<f64> {
-        load.driving(&self.motions[m], BALANCE)
+        load.driving(&self.motions[m], self.tuning.balanced)
     }
 
     fn driven(&self, load: &LoadWork) -> Vec<Driven> {
@@ -249,6 +250,7 @@ impl Free {
         let of = touched.iter().flat_map(|&g| &self.members[g]);
         let members: Vec<usize> = of.copied().collect();
         let size: f64 = row.values.iter().map(|x| x.abs()).sum();
+        let against = self.tuning.against;
         // The work on each motion, and relative to the largest that it could be.
         let works: Vec<(usize, f64, f64)> = members
             .iter()
@@ -256,11 +258,11 @@ impl Free {
                 let work = self.motions[m].work(&row.columns, &row.values);
                 (m, work, work / (size * self.largest[m]))
             })
-            .filter(|w| w.2.abs() > 1e-2 * AGAINST)
+            .filter(|w| w.2.abs() > 1e-2 * against)
             .collect();
         let law = row.offered.law();
         let opposed = works.iter().any(|&(m, _, relative)| {
-            relative.abs() > AGAINST
+            relative.abs() > against
                 && self
                     .gain(m, load)
                     .is_some_and(|gain| law.resistance(gain * relative) > 0.0)

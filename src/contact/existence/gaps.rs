@@ -12,15 +12,9 @@ use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 use base::linalg::sorted::distinct;
 
-/// A block is contradictory if NNLS comes this close to (Bᵀλ, cᵀλ) = (0, −1).
-const CONTRADICTION: f64 = 1e-8;
-
-/// Returns an error that names the bodies and the place of the first contradiction. Collective.
-pub fn check(problem: &Problem, dual: &Dual) -> Result<()> {
-    dual.stiffness.session.agree(check_mine(problem, dual))
-}
-
-fn check_mine(problem: &Problem, dual: &Dual) -> Result<()> {
+/// Returns an error that names the bodies and the place of the first contradiction on this rank, for NNLS that comes as
+/// near as `near`.
+pub fn check(problem: &Problem, dual: &Dual, near: f64) -> Result<()> {
     let jump = &dual.stiffness.jump;
     for block in &jump.blocks {
         let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
@@ -38,7 +32,7 @@ fn check_mine(problem: &Problem, dual: &Dual) -> Result<()> {
             let gaps: Vec<f64> = at.iter().map(|&i| gap(members[i])).collect();
             let free: Vec<bool> = at.iter().map(|&i| equation(members[i])).collect();
             let column = |j: usize, k: usize| b.get(at[k], j);
-            if contradicts(b.cols, column, &gaps, &free) {
+            if contradicts(b.cols, column, (&gaps, &free), near) {
                 let rows: Vec<usize> = at.iter().map(|&i| members[i]).collect();
                 return Err(contradiction(problem, block, &rows));
             }
@@ -48,7 +42,12 @@ fn check_mine(problem: &Problem, dual: &Dual) -> Result<()> {
 }
 
 /// Whether some λ ≥ 0, free on equations, has Bᵀλ = 0 and cᵀλ < 0. `bt` gives the entries of Bᵀ, which has `n` rows.
-fn contradicts(n: usize, bt: impl Fn(usize, usize) -> f64, c: &[f64], free: &[bool]) -> bool {
+fn contradicts(
+    n: usize,
+    bt: impl Fn(usize, usize) -> f64,
+    (c, free): (&[f64], &[bool]),
+    near: f64,
+) -> bool {
     let largest = c.iter().fold(0.0f64, |a, c| a.max(c.abs()));
     if largest == 0.0 {
         return false;
@@ -60,7 +59,7 @@ fn contradicts(n: usize, bt: impl Fn(usize, usize) -> f64, c: &[f64], free: &[bo
     let mut wanted = vec![0.0; n + 1];
     wanted[n] = -1.0;
     let (_, rest) = nnls(&a, &wanted, free);
-    rest.iter().all(|v| v.abs() < CONTRADICTION)
+    rest.iter().all(|v| v.abs() < near)
 }
 
 /// The sentence about these rows of a block.

@@ -13,12 +13,9 @@ use crate::feti::operators::springs::forceless;
 use crate::substructures::Law;
 use base::linalg::dense::Dense;
 
-/// cᵀN counts as zero below this, relative to its terms: rounding of given gaps.
-const LEVEL: f64 = 1e-12;
-
 /// Moves the multipliers of all blocks of dependent rows downhill in cᵀλ, until rows with multipliers do not contradict
-/// each other. Forces Bᵀλ stay.
-pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64]) {
+/// each other. Forces Bᵀλ stay. cᵀN counts as zero below `level`, relative to its terms.
+pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64], level: f64) {
     for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
         let on: Vec<bool> = block
             .rows
@@ -32,14 +29,20 @@ pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64]) {
         let law: Vec<Law> = rows.iter().map(|&r| jump.law[r]).collect();
         let c: Vec<f64> = rows.iter().map(|&r| jump.gap[r]).collect();
         let mut own: Vec<f64> = rows.iter().map(|&r| lambda[r]).collect();
-        ratio_test_descent_at_node(&b, &law, &c, &mut own);
+        ratio_test_descent_at_node(&b, &law, &c, &mut own, level);
         rows.iter().zip(own).for_each(|(&r, l)| lambda[r] = l);
     }
 }
 
 /// Moves the multipliers of the rows `b` of one node downhill in cᵀλ, until rows with multipliers do not contradict
 /// each other. Forces Bᵀλ stay.
-fn ratio_test_descent_at_node(b: &Dense, law: &[Law], c: &[f64], lambda: &mut [f64]) {
+fn ratio_test_descent_at_node(
+    b: &Dense,
+    law: &[Law],
+    c: &[f64],
+    lambda: &mut [f64],
+    rounding: f64,
+) {
     // A row leaves in each pass.
     for _ in 0..lambda.len() {
         let on = |&r: &usize| law[r].bears(lambda[r]);
@@ -59,7 +62,7 @@ fn ratio_test_descent_at_node(b: &Dense, law: &[Law], c: &[f64], lambda: &mut [f
                 .zip(column)
                 .map(|(&r, v)| (c[r] * v).abs())
                 .sum();
-            if slope.abs() > LEVEL * terms {
+            if slope.abs() > rounding * terms {
                 level = level.max(slope.abs());
                 along
                     .iter_mut()
@@ -87,5 +90,5 @@ fn ratio_test_descent_at_node(b: &Dense, law: &[Law], c: &[f64], lambda: &mut [f
 }
 
 #[cfg(test)]
-#[path = "../../tests/inside/contact/ratio_test.rs"]
+#[path = "../../../tests/inside/contact/repairs/dependent.rs"]
 mod tests;

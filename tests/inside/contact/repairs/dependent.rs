@@ -1,6 +1,9 @@
-//! Unit tests of `src/contact/ratio_test.rs`.
+//! Unit tests of `src/contact/repairs/dependent.rs`.
 
 use super::*;
+
+/// cᵀN below this is rounding.
+const LEVEL: f64 = 1e-12;
 
 /// The rows between bodies that meet at one node, in a grid of 2 × 2 or 2 × 2 × 2 bodies.
 fn grid(dim: usize) -> Dense {
@@ -45,7 +48,7 @@ fn one_row_of_a_cross_point_leaves() {
             scattered(4, 0.5 + f64::from(seed)),
         );
         let mut after = before.clone();
-        ratio_test_descent_at_node(&b, &[Law::Unilateral; 4], &c, &mut after);
+        ratio_test_descent_at_node(&b, &[Law::Unilateral; 4], &c, &mut after, LEVEL);
         let sign = -work(&c, &n).signum();
         let furthest = (0..4)
             .filter(|&r| sign * n[r] < 0.0)
@@ -67,7 +70,7 @@ fn the_forces_stay_and_the_dual_energy_rises() {
             scattered(12, 0.3 + f64::from(seed)),
         );
         let mut after = before.clone();
-        ratio_test_descent_at_node(&b, &[Law::Unilateral; 12], &c, &mut after);
+        ratio_test_descent_at_node(&b, &[Law::Unilateral; 12], &c, &mut after, LEVEL);
         for (now, was) in forces(&b, &after).iter().zip(forces(&b, &before)) {
             assert!((now - was).abs() < 1e-12);
         }
@@ -84,7 +87,7 @@ fn gaps_that_fit_leave_the_rows_alone() {
     let before = scattered(4, 3.0);
     for c in [vec![0.0; 4], vec![0.1, 0.3, 0.5, 0.3]] {
         let mut after = before.clone();
-        ratio_test_descent_at_node(&b, &[Law::Unilateral; 4], &c, &mut after);
+        ratio_test_descent_at_node(&b, &[Law::Unilateral; 4], &c, &mut after, LEVEL);
         assert_eq!(after, before);
     }
     // Ties have multipliers of both signs and never leave.
@@ -94,6 +97,7 @@ fn gaps_that_fit_leave_the_rows_alone() {
         &[Law::Tie, Law::Unilateral, Law::Unilateral, Law::Unilateral],
         &[1.0, 0.0, 0.0, 0.0],
         &mut after,
+        LEVEL,
     );
     assert!(
         (after[0] + 1.5).abs() < 1e-13 && after[2] == 0.0,

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::line_minimum::line_minimum;
+use crate::contact::piecewise_quadratic::{minimise, PiecewiseQuadratic};
+use crate::contact::tuning::Tuning;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::by_column::ByColumn;
 use base::linalg::dense::Dense;
@@ -14,20 +15,11 @@ use parallel::parcels::Parcels;
 /// A row a z ≤ b: a as (motion, coefficient as bits), scaled to a largest coefficient of 1.
 type MotionConstraint = Vec<[u64; 2]>;
 
-/// Work of a row on a motion below this, relative to the largest that it could be, is none.
-const AGAINST: f64 = 1e-8;
-
-/// Where no motion removes all violations, so many motions at most are looked at together for one that leaves least.
-const FEW: usize = 64;
-
-/// Largest number of Newton steps to it.
-const STEPS: usize = 50;
-
 /// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors that
 /// are known here. It is a combination of those motions that nothing holds or drives. Where some violations stay
 /// whatever the motion is, it is the motion that leaves the least sum of their squares. `None` if bodies are to stay
 /// where they are. Collective.
-pub fn least_distance(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
+pub fn least_distance(dual: &Dual, gaps: &[f64], tuning: &Tuning) -> Option<Vec<f64>> {
     let motions = dual.natural.unheld();
     if motions.is_empty() {
         return None;
@@ -47,7 +39,7 @@ pub fn least_distance(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
         let a = by_column.works(columns, values);
         let largest = a.iter().fold(0.0f64, |m, x| m.max(x.1.abs()));
         let size: f64 = values.iter().map(|x| x.abs()).sum();
-        if largest > AGAINST * size {
+        if largest > tuning.against * size {
             let rounded = a.iter().map(|&(m, x)| {
                 let x = (x / largest * 1e12).round() / 1e12 + 0.0;
                 [m as u64, x.to_bits()]
@@ -82,7 +74,7 @@ pub fn least_distance(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
     let mut alpha: Option<Vec<f64>> = None;
     for (set, rows) in rows {
         let members = &members[&set];
-        let Some(z) = least(members, &rows) else {
+        let Some(z) = least(members, &rows, tuning) else {
             continue;
         };
         let known = dual.natural.known();
@@ -95,7 +87,11 @@ pub fn least_distance(dual: &Dual, gaps: &[f64]) -> Option<Vec<f64>> {
 
 /// Least distance programming by NNLS (Lawson and Hanson, chapter 23): min ‖z‖ with −A z ≥ −b, for the motions
 /// `members`. `None` if z = 0 does.
-fn least(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Option<Vec<f64>> {
+fn least(
+    members: &[usize],
+    rows: &[(&MotionConstraint, f64)],
+    tuning: &Tuning,
+) -> Option<Vec<f64>> {
     if rows.iter().all(|row| row.1 >= 0.0) {
         return None;
     }
@@ -113,15 +109,18 @@ fn least(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Option<Vec<f64
     wanted[n] = 1.0;
     let (_, rest) = nnls(&e, &wanted, &vec![false; rows.len()]);
     if rest[n].abs() < 1e-9 {
-        return (n <= FEW).then(|| least_violation(members, rows));
+        return (n <= tuning.placed_together).then(|| least_violation(members, rows, tuning));
     }
     // `rest` is b − A x here, the negative of the residual in the book. The quotient is the same.
     Some((0..n).map(|j| -rest[j] / rest[n] * scale).collect())
 }
 
-/// min ½ ‖(A z − b)₊‖² + ½ δ ‖z‖² for the motions `members`, with a δ that is small beside A: by Newton's method with
-/// steps to the least value along each direction.
-fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<f64> {
+/// min ½ ‖(A z − b)₊‖² + ½ δ ‖z‖² for the motions `members`, with a δ that is small beside A.
+fn least_violation(
+    members: &[usize],
+    rows: &[(&MotionConstraint, f64)],
+    tuning: &Tuning,
+) -> Vec<f64> {
     let n = members.len();
     let of = |a: &MotionConstraint| -> Vec<(usize, f64)> {
         let place = |m: u64| members.binary_search(&(m as usize));
@@ -130,60 +129,94 @@ fn least_violation(members: &[usize], rows: &[(&MotionConstraint, f64)]) -> Vec<
             .map(|(j, x)| (j.expect("rows of this set"), x))
             .collect()
     };
-    let rows: Vec<(Vec<(usize, f64)>, f64)> = rows.iter().map(|(a, b)| (of(a), *b)).collect();
-    let weak = 1e-9 * rows.len() as f64 / n as f64;
-    let along = |a: &[(usize, f64)], z: &[f64]| -> f64 { a.iter().map(|&(j, x)| x * z[j]).sum() };
-    let beyond = |z: &[f64], (a, b): &(Vec<(usize, f64)>, f64)| (along(a, z) - b).max(0.0);
-    let value = |z: &[f64]| {
-        let squares: f64 = rows.iter().map(|row| beyond(z, row).powi(2)).sum();
-        squares + weak * z.iter().map(|z| z * z).sum::<f64>()
+    let mut violation = Violation {
+        rows: rows.iter().map(|(a, b)| (of(a), *b)).collect(),
+        weak: 1e-9 * rows.len() as f64 / n as f64,
+        z: vec![0.0; n],
+        d: Vec::new(),
+        now: 0.0,
     };
-    let mut z = vec![0.0; n];
-    let mut now = value(&z);
-    for _ in 0..STEPS {
+    violation.now = violation.value(&violation.z);
+    minimise(&mut violation, tuning.placed_steps, tuning);
+    violation.z
+}
+
+/// Violations at z, and a direction from there.
+struct Violation {
+    /// A and b.
+    rows: Vec<(Vec<(usize, f64)>, f64)>,
+    /// δ.
+    weak: f64,
+    z: Vec<f64>,
+    d: Vec<f64>,
+    /// Twice the function at z.
+    now: f64,
+}
+
+impl Violation {
+    fn value(&self, z: &[f64]) -> f64 {
+        let squares: f64 = self.rows.iter().map(|row| beyond(z, row).powi(2)).sum();
+        squares + self.weak * z.iter().map(|z| z * z).sum::<f64>()
+    }
+}
+
+fn along(a: &[(usize, f64)], z: &[f64]) -> f64 {
+    a.iter().map(|&(j, x)| x * z[j]).sum()
+}
+
+fn beyond(z: &[f64], (a, b): &(Vec<(usize, f64)>, f64)) -> f64 {
+    (along(a, z) - b).max(0.0)
+}
+
+impl PiecewiseQuadratic for Violation {
+    fn direct(&mut self) -> bool {
+        let n = self.z.len();
         let mut h = Dense::zeros(n, n);
-        let mut d: Vec<f64> = z.iter().map(|z| -weak * z).collect();
-        (0..n).for_each(|j| h.set(j, j, weak));
-        for row in &rows {
-            let far = beyond(&z, row);
+        self.d = self.z.iter().map(|z| -self.weak * z).collect();
+        (0..n).for_each(|j| h.set(j, j, self.weak));
+        for row in &self.rows {
+            let far = beyond(&self.z, row);
             if far > 0.0 {
                 for &(i, x) in &row.0 {
-                    d[i] -= x * far;
+                    self.d[i] -= x * far;
                     for &(j, y) in &row.0 {
                         h.set(i, j, h.get(i, j) + x * y);
                     }
                 }
             }
         }
-        Semidefinite::new(&h).solve(&mut d);
-        let slope = |t: f64| {
-            let mut sums = [0.0, 0.0];
-            for (z, d) in z.iter().zip(&d) {
-                sums[0] += weak * d * (z + t * d);
-                sums[1] += weak * d * d;
-            }
-            for (a, b) in &rows {
-                let (far, opens) = (along(a, &z) - b, along(a, &d));
-                if far + t * opens > 0.0 {
-                    sums[0] += opens * (far + t * opens);
-                    sums[1] += opens * opens;
-                }
-            }
-            sums
-        };
-        let Some(t) = line_minimum(slope, true) else {
-            break;
-        };
-        let next: Vec<f64> = z.iter().zip(&d).map(|(z, d)| z + t * d).collect();
-        let then = value(&next);
-        if then >= (1.0 - 1e-12) * now {
-            break;
-        }
-        (z, now) = (next, then);
+        Semidefinite::new(&h).solve(&mut self.d);
+        true
     }
-    z
+
+    fn slope(&self, t: f64) -> [f64; 2] {
+        let mut sums = [0.0, 0.0];
+        for (z, d) in self.z.iter().zip(&self.d) {
+            sums[0] += self.weak * d * (z + t * d);
+            sums[1] += self.weak * d * d;
+        }
+        for (a, b) in &self.rows {
+            let (far, opens) = (along(a, &self.z) - b, along(a, &self.d));
+            if far + t * opens > 0.0 {
+                sums[0] += opens * (far + t * opens);
+                sums[1] += opens * opens;
+            }
+        }
+        sums
+    }
+
+    fn go(&mut self, t: f64) -> bool {
+        let z = self.z.iter().zip(&self.d);
+        let next: Vec<f64> = z.map(|(z, d)| z + t * d).collect();
+        let then = self.value(&next);
+        let falls = then < (1.0 - 1e-12) * self.now;
+        if falls {
+            (self.z, self.now) = (next, then);
+        }
+        falls
+    }
 }
 
 #[cfg(test)]
-#[path = "../../tests/inside/contact/least_distance.rs"]
+#[path = "../../../tests/inside/contact/repairs/placed.rs"]
 mod tests;

@@ -1,18 +1,15 @@
-//! Rigid motions of the floating bodies and the rows: whether the load pushes a body away for ever, and which rows must
-//! hold so that no body comes loose.
+//! Rigid motions of the floating bodies and the rows: whether the load pushes a body away for ever.
 //!
 //! Let v = R α be a motion that the rows allow: B_E v = 0, B_I v ≤ 0. A solution exists if and only if the load gains
 //! no energy on any such motion: eᵀα ≤ 0 for all of them. By Farkas' lemma this holds if and only if Gᵀ λ = e has a
 //! solution with λ_I ≥ 0.
 //!
-//! Few motions are asked about before the loop, by the exact method of Lawson and Hanson. With many the loop is the
-//! answer: λ_I ≥ 0 with Gᵀ λ = e is what it looks for, and where there is none, a motion α with eᵀα > 0 against which
-//! no row stands shows when rows are put back ([`coercivity`](super::coercivity)). Only a loop that fails asks
-//! (`unilateral_springs`), and one that cannot begin, as the load works on a motion that all rows leave free.
+//! Few motions are asked about by the exact method of Lawson and Hanson, many by rigid bodies on springs.
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::contact::unilateral_springs;
+use super::springs;
+use crate::contact::tuning::Tuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
@@ -27,58 +24,17 @@ use base::linalg::nnls::nnls;
 use base::linalg::sorted::distinct;
 use parallel::parcels::Parcels;
 
-/// The iteration accepts the load as balanced if the rest of e is below this, relative to the loads.
-pub const NEARLY: f64 = 1e-7;
-
-/// The part of e outside the cone may be rounding if it is below this, relative to the loads.
-pub const BALANCE: f64 = 1e-9;
-
-/// Asks before the loop, where few motions make the question cheap. With many the loop itself finds the answer:
-/// multipliers of the right sign in equilibrium with the load, or a motion that nothing stops (`coercivity`,
-/// [`check`]). Collective.
-///
-/// # Errors
-/// As [`check`].
-pub fn check_few(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
-    if dual.natural.r <= FEW {
-        check(problem, dual, load, &[])
-    } else {
-        Ok(())
-    }
-}
-
-/// For a loop that has failed, or does not find the answer by itself: the same with many motions. `lambda` is where the
-/// loop has come. Collective.
-///
-/// # Errors
-/// As [`check`].
-pub fn check_many(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
-    if dual.natural.r > FEW {
-        check(problem, dual, load, lambda)
-    } else {
-        Ok(())
-    }
-}
-
-/// Before a loop with all candidates as equations: returns an error if the load works on a motion that even these leave
-/// free. Where it pushes bodies away, the sentence says so, as it does of few motions. Collective.
-///
-/// # Errors
-/// As [`check`], and bodies that nothing holds.
-pub fn check_held(problem: &Problem, dual: &Dual, load: &KernelLoad) -> Result<()> {
-    let held = dual.natural.check_held(problem, &dual.stiffness, load);
-    if held.is_err() {
-        check_many(problem, dual, load, &vec![0.0; dual.stiffness.jump.n_owned])?;
-    }
-    held
-}
-
 /// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
 /// begins at `lambda`. Collective.
 ///
 /// # Errors
 /// Such bodies; PETSc's own errors.
-fn check(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> Result<()> {
+pub fn check(
+    problem: &Problem,
+    dual: &Dual,
+    (load, lambda): (&KernelLoad, &[f64]),
+    tuning: &Tuning,
+) -> Result<()> {
     let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
     if natural.r == 0 {
         return Ok(());
@@ -90,12 +46,12 @@ fn check(problem: &Problem, dual: &Dual, load: &KernelLoad, lambda: &[f64]) -> R
         let (columns, free) = directions(dual.comm(), jump, &rows, natural.r);
         let rest = (0..).zip(nnls(&columns, &load.e, &free).1);
         let rest = rest.filter(|&(c, v)| v.abs() > load.rounding[c as usize]);
-        (KernelMotion(rest.collect()), BALANCE)
+        (KernelMotion(rest.collect()), tuning.balanced)
     } else {
-        let wanted = (&load.e[..], 0.1 * NEARLY * size);
-        let found = unilateral_springs::uncarried_load(dual.comm(), natural, jump, wanted, lambda);
+        let wanted = (&load.e[..], 0.1 * tuning.nearly_balanced * size);
+        let found = springs::uncarried_load(dual.comm(), natural, jump, (wanted, lambda), tuning);
         match found {
-            Some(rest) => (rest, NEARLY),
+            Some(rest) => (rest, tuning.nearly_balanced),
             // The certificate at the end of the loop handles the undecided cases.
             None => return Ok(()),
         }

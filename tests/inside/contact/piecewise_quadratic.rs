@@ -1,4 +1,4 @@
-//! Unit tests of `src/contact/line_minimum.rs`.
+//! Unit tests of `src/contact/piecewise_quadratic.rs`.
 
 use super::*;
 
@@ -27,17 +27,20 @@ fn the_minimum_is_found_on_any_piece() {
     ];
     for ((a, b), springs, at) in cases {
         let slope = slope(a, b, springs);
-        let far = line_minimum(&slope, true).expect("it falls");
+        let far = line_minimum(&slope, true, &Tuning::DEFAULT).expect("it falls");
         assert!((far - at).abs() < 1e-8 * at, "{far} {at}");
-        let near = line_minimum(&slope, false).expect("it falls");
+        let near = line_minimum(&slope, false, &Tuning::DEFAULT).expect("it falls");
         assert!((near - at.min(1.0)).abs() < 1e-8, "{near} {at}");
     }
 }
 
 #[test]
 fn what_does_not_fall_has_none() {
-    assert_eq!(line_minimum(|t| [t, 1.0], true), None);
-    assert_eq!(line_minimum(|_| [f64::NAN, 1.0], true), None);
+    assert_eq!(line_minimum(|t| [t, 1.0], true, &Tuning::DEFAULT), None);
+    assert_eq!(
+        line_minimum(|_| [f64::NAN, 1.0], true, &Tuning::DEFAULT),
+        None
+    );
     // A function that falls for ever ends, too.
-    assert!(line_minimum(|_| [-1.0, 0.0], true).is_some_and(|t| t > 1e12));
+    assert!(line_minimum(|_| [-1.0, 0.0], true, &Tuning::DEFAULT).is_some_and(|t| t > 1e12));
 }

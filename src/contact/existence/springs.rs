@@ -16,31 +16,13 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::line_minimum::line_minimum;
+use crate::contact::piecewise_quadratic::{minimise, PiecewiseQuadratic};
+use crate::contact::tuning::Tuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::kernel_motion::KernelMotion;
 use crate::feti::projector::natural::NaturalCoarse;
 use parallel::exchange::{any, sum_all};
-
-/// The last ε. Rounding of the factor is 1e-16, the softest motions of a thousand bodies in a row are 1e-6.
-const WEAK: f64 = 1e-8;
-
-/// ε of the first round relative to its last value, and its ratio from round to round. Newton's directions are long
-/// where rows let a body loose, and steps short. A large ε first keeps bodies near each other: 8³ blocks take 42 Newton
-/// steps, not 48, a wall of 954 bricks 27, and the sets are nearly right after two rounds. From forces of the loop the
-/// last ε is right at once: 20³ blocks of one element take 8 steps, with a first ε of 1e4 times the last 19.
-const FIRST: f64 = 1e8;
-const FALL: f64 = 1e-2;
-
-/// Largest number of times that a follows α.
-const ROUNDS: usize = 10;
-
-/// Largest number of Newton steps in each.
-const STEPS: usize = 60;
-
-/// A row stands against a motion if its work is above this, relative to the largest that it could be.
-const AGAINST: f64 = 1e-6;
 
 /// The part of `e` that the rows cannot carry: none if it is below `enough` everywhere. `None` if this is not decided.
 /// `lambda` has forces on the owned rows that carry much of it, or zeros. The same on every rank. Collective.
@@ -48,13 +30,13 @@ pub fn uncarried_load(
     comm: &SimpleCommunicator,
     natural: &NaturalCoarse,
     jump: &Jump,
-    (e, enough): (&[f64], f64),
-    lambda: &[f64],
+    ((e, enough), lambda): ((&[f64], f64), &[f64]),
+    tuning: &Tuning,
 ) -> Option<KernelMotion> {
     let pre = lambda.iter().zip(&jump.law);
     let pre: Vec<f64> = pre.map(|(&l, law)| -law.project(l)).collect();
     let begun = any(comm, pre.iter().any(|c| *c != 0.0));
-    let mut springs = UnilateralSprings::new(comm, natural, jump, e, &pre);
+    let mut springs = UnilateralSprings::new(comm, natural, jump, (e, &pre), tuning);
     match springs.carry_load(enough, begun) {
         LoadBalance::Carried => Some(KernelMotion::default()),
         LoadBalance::Driven(away) => Some(away),
@@ -82,6 +64,7 @@ struct UnilateralSprings<'a> {
     e: &'a [f64],
     /// ε D.
     weak: Vec<f64>,
+    tuning: &'a Tuning,
 }
 
 impl<'a> UnilateralSprings<'a> {
@@ -89,8 +72,8 @@ impl<'a> UnilateralSprings<'a> {
         comm: &'a SimpleCommunicator,
         natural: &'a NaturalCoarse,
         jump: &'a Jump,
-        e: &'a [f64],
-        gap: &'a [f64],
+        (e, gap): (&'a [f64], &'a [f64]),
+        tuning: &'a Tuning,
     ) -> UnilateralSprings<'a> {
         let between = jump.rows_between_bodies();
         let rows: Vec<usize> = between.filter(|&i| jump.is_candidate(i)).collect();
@@ -99,7 +82,7 @@ impl<'a> UnilateralSprings<'a> {
         for &i in &rows {
             let (columns, values) = natural.all.entries(i);
             for (&c, g) in columns.iter().zip(values) {
-                weak[c as usize] += WEAK * g * g;
+                weak[c as usize] += tuning.springs_weak * g * g;
             }
         }
         known.sum(comm, &mut weak);
@@ -117,19 +100,22 @@ impl<'a> UnilateralSprings<'a> {
             gap,
             e,
             weak,
+            tuning,
         }
     }
 
     /// Whether springs carry the load up to `enough`. `begun` says that they nearly do at α = 0. Collective.
     fn carry_load(&mut self, enough: f64, begun: bool) -> LoadBalance {
-        let known = self.natural.known();
+        let (known, tuning) = (self.natural.known(), self.tuning);
         let (mut alpha, mut anchor) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         let weak = self.weak.clone();
-        let first = if begun { 1.0 } else { FIRST };
-        for round in 0..ROUNDS {
-            let softer = (first * FALL.powi(round as i32)).max(1.0);
+        let first = if begun { 1.0 } else { tuning.springs_first };
+        for round in 0..tuning.springs_rounds {
+            let softer = (first * tuning.springs_fall.powi(round as i32)).max(1.0);
             self.weak = weak.iter().map(|w| softer * w).collect();
-            self.minimise(&mut alpha, &anchor, begun || round > 0);
+            let mut springs = Stretched::new(self, alpha, &anchor, begun || round > 0);
+            minimise(&mut springs, tuning.springs_steps, tuning);
+            alpha = springs.alpha;
             let along: Vec<f64> = alpha.iter().zip(&anchor).map(|(a, b)| a - b).collect();
             let rest: Vec<f64> = along.iter().zip(&self.weak).map(|(a, w)| a * w).collect();
             let is_little = rest.iter().all(|v| v.abs() <= enough);
@@ -168,106 +154,18 @@ impl<'a> UnilateralSprings<'a> {
         self.jump.law[self.rows[k]].bears(s)
     }
 
-    /// Newton's method from `alpha`. It begins with the springs that pull there, or with all. Collective.
-    fn minimise(&self, alpha: &mut [f64], anchor: &[f64], begun: bool) {
-        let shape = self.natural.shape.as_ref().expect("a body floats");
-        let all = &self.natural.all;
-        let mut stretch = self.stretch(alpha);
-        let mut on = vec![true; self.rows.len()];
-        let mut chosen = vec![false; all.n()];
-        for step in 0..STEPS {
-            if step > 0 || begun {
-                let now: Vec<bool> = (0..on.len()).map(|k| self.pulls(k, stretch[k])).collect();
-                // The minimum for the springs that pulled is that of those which pull now.
-                if !any(self.comm, now != on) && step > 0 {
-                    return;
-                }
-                on = now;
-            }
-            self.rows
-                .iter()
-                .zip(&on)
-                .for_each(|(&i, on)| chosen[i] = *on);
-            let mut a = shape.product(self.comm, all, all, |i| chosen[i]);
-            for c in (0..a.n()).filter(|&c| shape.has(c)) {
-                a.set_diagonal(c, a.get(c, c) + self.weak[c]);
-            }
-            let mut d = self.downhill(alpha, anchor, &stretch);
-            Gram::new(shape, a).solve(&mut d);
-            let along = self.along(&d);
-            let t = self.length(alpha, anchor, &d, (&stretch, &along));
-            alpha.iter_mut().zip(&d).for_each(|(a, d)| *a += t * d);
-            stretch
-                .iter_mut()
-                .zip(&along)
-                .for_each(|(s, d)| *s += t * d);
-            let known = self.natural.known();
-            let moved = known.largest(self.comm, &d) * t;
-            let size = known.largest(self.comm, alpha);
-            if moved <= 1e-14 * size {
-                return;
-            }
-        }
-    }
-
-    /// e − Gᵀλ − ε D (α − a).
-    fn downhill(&self, alpha: &[f64], anchor: &[f64], stretch: &[f64]) -> Vec<f64> {
-        let mut force = vec![0.0; alpha.len()];
-        for (k, &i) in self.rows.iter().enumerate() {
-            if self.pulls(k, stretch[k]) {
-                let (columns, values) = self.natural.all.entries(i);
-                for (&c, g) in columns.iter().zip(values) {
-                    force[c as usize] += g * stretch[k];
-                }
-            }
-        }
-        self.natural.known().sum(self.comm, &mut force);
-        (0..alpha.len())
-            .map(|c| self.e[c] - force[c] - self.weak[c] * (alpha[c] - anchor[c]))
-            .collect()
-    }
-
-    /// The t that minimises the function along α + t d; 0 if it does not fall.
-    fn length(
-        &self,
-        alpha: &[f64],
-        anchor: &[f64],
-        d: &[f64],
-        (stretch, along): (&[f64], &[f64]),
-    ) -> f64 {
-        let constant = self.natural.known().total(self.comm, |c| {
-            [
-                d[c] * (self.weak[c] * (alpha[c] - anchor[c]) - self.e[c]),
-                d[c] * d[c] * self.weak[c],
-            ]
-        });
-        let slope = |t: f64| {
-            let mut sums = [0.0, 0.0];
-            for k in 0..stretch.len() {
-                let s = stretch[k] + t * along[k];
-                if self.pulls(k, s) {
-                    sums[0] += s * along[k];
-                    sums[1] += along[k] * along[k];
-                }
-            }
-            sum_all(self.comm, &mut sums);
-            [
-                sums[0] + constant[0] + t * constant[1],
-                sums[1] + constant[1],
-            ]
-        };
-        line_minimum(slope, true).unwrap_or(0.0)
-    }
-
     /// The part of the load along `motion`, if the load drives it and no row stands against it. Collective.
     fn allowed(&self, motion: &[f64]) -> Option<KernelMotion> {
         let known = self.natural.known();
-        let largest = known.largest(self.comm, motion);
-        let cut = |a: &f64| if a.abs() > AGAINST * largest { *a } else { 0.0 };
+        let (largest, against) = (
+            known.largest(self.comm, motion),
+            self.tuning.springs_against,
+        );
+        let cut = |a: &f64| if a.abs() > against * largest { *a } else { 0.0 };
         let mut alpha: Vec<f64> = motion.iter().map(cut).collect();
         let stands = self.along(&alpha).iter().zip(&self.rows).any(|(s, &i)| {
             let size: f64 = self.natural.all.entries(i).1.iter().map(|g| g.abs()).sum();
-            self.jump.law[i].resistance(*s) > 10.0 * AGAINST * size * largest
+            self.jump.law[i].resistance(*s) > 10.0 * against * size * largest
         });
         let terms = |c: usize| [alpha[c] * self.e[c], alpha[c] * alpha[c]];
         let [work, square] = known.total(self.comm, terms);
@@ -276,5 +174,125 @@ impl<'a> UnilateralSprings<'a> {
         }
         alpha.iter_mut().for_each(|a| *a *= work / square);
         Some(known.motion(self.comm, &alpha, 0.0))
+    }
+}
+
+/// The springs at α, and a direction from there.
+struct Stretched<'a> {
+    of: &'a UnilateralSprings<'a>,
+    alpha: Vec<f64>,
+    anchor: &'a [f64],
+    /// g_iᵀα − c_i of the rows that may hold, and the springs among them of the last direction.
+    stretch: Vec<f64>,
+    on: Vec<bool>,
+    /// Whether the first direction has the springs that pull at its α, not all.
+    begun: bool,
+    steps: usize,
+    /// d, g_iᵀd, and φ' and φ'' without the springs.
+    d: Vec<f64>,
+    along: Vec<f64>,
+    constant: [f64; 2],
+}
+
+impl<'a> Stretched<'a> {
+    fn new(
+        of: &'a UnilateralSprings<'a>,
+        alpha: Vec<f64>,
+        anchor: &'a [f64],
+        begun: bool,
+    ) -> Stretched<'a> {
+        Stretched {
+            stretch: of.stretch(&alpha),
+            on: vec![true; of.rows.len()],
+            of,
+            alpha,
+            anchor,
+            begun,
+            steps: 0,
+            d: Vec::new(),
+            along: Vec::new(),
+            constant: [0.0; 2],
+        }
+    }
+
+    /// e − Gᵀλ − ε D (α − a).
+    fn downhill(&self) -> Vec<f64> {
+        let (of, alpha) = (self.of, &self.alpha);
+        let mut force = vec![0.0; alpha.len()];
+        for (k, &i) in of.rows.iter().enumerate() {
+            if of.pulls(k, self.stretch[k]) {
+                let (columns, values) = of.natural.all.entries(i);
+                for (&c, g) in columns.iter().zip(values) {
+                    force[c as usize] += g * self.stretch[k];
+                }
+            }
+        }
+        of.natural.known().sum(of.comm, &mut force);
+        (0..alpha.len())
+            .map(|c| of.e[c] - force[c] - of.weak[c] * (alpha[c] - self.anchor[c]))
+            .collect()
+    }
+}
+
+/// Collective.
+impl PiecewiseQuadratic for Stretched<'_> {
+    fn direct(&mut self) -> bool {
+        let of = self.of;
+        let shape = of.natural.shape.as_ref().expect("a body floats");
+        let all = &of.natural.all;
+        if self.steps > 0 || self.begun {
+            let pulls = |k: usize| of.pulls(k, self.stretch[k]);
+            let now: Vec<bool> = (0..self.on.len()).map(pulls).collect();
+            // The minimum for the springs that pulled is that of those which pull now.
+            if !any(of.comm, now != self.on) && self.steps > 0 {
+                return false;
+            }
+            self.on = now;
+        }
+        self.steps += 1;
+        let mut chosen = vec![false; all.n()];
+        let rows = of.rows.iter().zip(&self.on);
+        rows.for_each(|(&i, on)| chosen[i] = *on);
+        let mut a = shape.product(of.comm, all, all, |i| chosen[i]);
+        for c in (0..a.n()).filter(|&c| shape.has(c)) {
+            a.set_diagonal(c, a.get(c, c) + of.weak[c]);
+        }
+        self.d = self.downhill();
+        Gram::new(shape, a).solve(&mut self.d);
+        self.along = of.along(&self.d);
+        let (d, alpha) = (&self.d, &self.alpha);
+        self.constant = of.natural.known().total(of.comm, |c| {
+            [
+                d[c] * (of.weak[c] * (alpha[c] - self.anchor[c]) - of.e[c]),
+                d[c] * d[c] * of.weak[c],
+            ]
+        });
+        true
+    }
+
+    fn slope(&self, t: f64) -> [f64; 2] {
+        let (of, along) = (self.of, &self.along);
+        let mut sums = [0.0, 0.0];
+        for k in 0..self.stretch.len() {
+            let s = self.stretch[k] + t * along[k];
+            if of.pulls(k, s) {
+                sums[0] += s * along[k];
+                sums[1] += along[k] * along[k];
+            }
+        }
+        sum_all(of.comm, &mut sums);
+        let [first, second] = self.constant;
+        [sums[0] + first + t * second, sums[1] + second]
+    }
+
+    fn go(&mut self, t: f64) -> bool {
+        let alpha = self.alpha.iter_mut().zip(&self.d);
+        alpha.for_each(|(a, d)| *a += t * d);
+        let stretch = self.stretch.iter_mut().zip(&self.along);
+        stretch.for_each(|(s, d)| *s += t * d);
+        let known = self.of.natural.known();
+        let moved = known.largest(self.of.comm, &self.d) * t;
+        let size = known.largest(self.of.comm, &self.alpha);
+        moved > 1e-14 * size
     }
 }
