@@ -158,11 +158,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// A checkpoint whose rows are not those of the solver, contacts that cannot be renewed.
-    pub fn resume<'a>(
-        &mut self,
-        session: &Session,
-        stepper: Stepper<'a>,
-    ) -> Result<(Stepper<'a>, Records)> {
+    pub fn resume(&mut self, session: &Session, stepper: Stepper) -> Result<(Stepper, Records)> {
         let Some(file) = &self.resume else {
             return Ok((stepper, Records::default()));
         };
