@@ -74,7 +74,7 @@ fn steps_are_those_of_the_program() {
                 assert_eq!(resumed.checkpoint()?, None);
                 Ok(())
             };
-            distribution::with_options(session, &scene, all).expect("all steps");
+            distribution::with_options(session, &scene.options, all).expect("all steps");
         });
     }
 }
