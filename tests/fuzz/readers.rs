@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use base::{ErrorKind, Result};
+use base::{Error, ErrorKind, Result};
 use fetifeti::Settings;
 use mesh::{defects, gmsh, Extractor, Members, MeshFile};
 use petsc::{Options, Session};
