@@ -63,7 +63,7 @@ run: build ## Solve the model problems with contact and without, compare with PE
 # Where things go. DESTDIR is put in front of all paths, for packagers; LIBDIR is PREFIX/lib.
 PREFIX ?= /usr/local
 
-install: build ## Install program, library, header, manual pages and examples below PREFIX (make install PREFIX=...)
+install: build ## Install program, libraries, headers, manual pages and examples below PREFIX (make install PREFIX=...)
 	scripts/install.sh "$(TARGET)/release" "$(PREFIX)" "$(DESTDIR)"
 
 uninstall: ## Remove what was installed below PREFIX

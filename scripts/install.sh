@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs what cargo has built: program, library, header, Fortran module, files for pkg-config and CMake, manual pages,
-# completions, documents and examples. Everything is put together first and copied at the end.
+# Installs what cargo has built: program, libraries, headers, Fortran module, files for pkg-config and CMake, manual
+# pages, completions, documents and examples. Everything is put together first and copied at the end.
 #
 #   scripts/install.sh BUILT PREFIX [DESTDIR]
 #
-#   BUILT      the directory with the program and libfetifeti.so (target/release)
+#   BUILT      the directory with the program, libfetifeti.so and libfetifeti_step.so (target/release)
 #   PREFIX     where the files will be used (/usr/local); LIBDIR in the environment replaces PREFIX/lib
 #   DESTDIR    put in front of all paths, for packagers
 #
@@ -28,12 +28,12 @@ case $libdir in
     "$prefix"/*) lib=${libdir#"$prefix"/} ;;
     *) stop "LIBDIR is '$libdir', expected a directory below the prefix '$prefix'" ;;
 esac
-for file in fetifeti libfetifeti.so; do
+for file in fetifeti libfetifeti.so libfetifeti_step.so; do
     [ -f "$built/$file" ] || stop "$built/$file is missing: run 'make build' first"
 done
 
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
-# The library's name for the loader ends with the version of its interface (build.rs).
+# The libraries' names for the loader end with the version of its interface (build.rs).
 abi=$(sed -n 's/^pub const ABI: u32 = \([0-9]*\);/\1/p' packaging/abi.rs)
 petsc=""
 for name in PETSc petsc; do
@@ -54,25 +54,31 @@ fill() {
 }
 
 put 755 "$built/fetifeti" bin/fetifeti
-put 755 "$built/libfetifeti.so" "$lib/libfetifeti.so.$version"
 strip "$root/bin/fetifeti"
-strip --strip-unneeded "$root/$lib/libfetifeti.so.$version"
+libraries=()
+for name in libfetifeti.so libfetifeti_step.so; do
+    libraries+=("$root/$lib/$name.$version")
+    put 755 "$built/$name" "$lib/$name.$version"
+    strip --strip-unneeded "$root/$lib/$name.$version"
+    ln -s "$name.$version" "$root/$lib/$name.$abi"
+    ln -s "$name.$abi" "$root/$lib/$name"
+done
 # Panics in crates name their files. The directory becomes "./////" of the same length: nothing moves.
 for dir in "$PWD/vendor" "${CARGO_HOME:-$HOME/.cargo}/registry"; do
     (
         export LC_ALL=C
         pattern=$(sed 's/[].[*^$|\\]/\\&/g' <<<"$dir")
         slashes=$(printf '%*s' $((${#dir} - 1)) "" | tr ' ' /)
-        sed -i "s|$pattern/|.$slashes/|g" "$root/bin/fetifeti" "$root/$lib/libfetifeti.so.$version"
+        sed -i "s|$pattern/|.$slashes/|g" "$root/bin/fetifeti" "${libraries[@]}"
     )
 done
-ln -s "libfetifeti.so.$version" "$root/$lib/libfetifeti.so.$abi"
-ln -s "libfetifeti.so.$abi" "$root/$lib/libfetifeti.so"
 fill fetifeti.pc.in "$lib/pkgconfig/fetifeti.pc"
+fill fetifeti_step.pc.in "$lib/pkgconfig/fetifeti_step.pc"
 fill FetiFetiConfig.cmake.in "$lib/cmake/FetiFeti/FetiFetiConfig.cmake"
 fill FetiFetiConfigVersion.cmake.in "$lib/cmake/FetiFeti/FetiFetiConfigVersion.cmake"
 
 put 644 wrappers/fetifeti.h include/fetifeti.h
+put 644 wrappers/step/fetifeti_step.h include/fetifeti_step.h
 put 644 wrappers/fetifeti.f90 share/fetifeti/fetifeti.f90
 # Compilers do not read each other's modules; without one here the source is enough.
 if command -v mpif90 >/dev/null; then

@@ -157,6 +157,11 @@ pub mod inside {
     pub use crate::feti::subdomain::{equal, scaled::ScaledSubdomain, turn, which};
     pub use crate::feti::LinearMethod;
     pub use crate::substructures::idle;
+
+    /// Handles and errors of C interfaces.
+    pub mod c {
+        pub use crate::capi::{alone, create, destroy, processor, put, together, Held, Pointer};
+    }
 }
 
 /// Runs `work` as the whole program. It starts PETSc with the process's arguments (so that PETSc options work) and ends

@@ -51,7 +51,12 @@ fn leaning(source: &str) -> Vec<(usize, &str)> {
 fn comments_of_documentation_stand_alone() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = Vec::new();
-    for folder in ["src", "crates", "wrappers/petsc-sys/src"] {
+    for folder in [
+        "src",
+        "crates",
+        "wrappers/petsc-sys/src",
+        "wrappers/step/src",
+    ] {
         collect(&root.join(folder), &mut files);
     }
     assert!(files.len() > 700, "only {} files were found", files.len());

@@ -1,4 +1,5 @@
-//! The object behind a C `FetiFeti`: checks of the arguments from C, and a common guard for all functions.
+//! The objects behind handles of C: checks of the arguments from C, and a common guard for all functions. The library
+//! of load steps (`wrappers/step`) has its handles from here, too.
 
 use super::error::{classified, raise};
 use super::object::Object;
@@ -6,71 +7,130 @@ use crate::Result;
 use base::Fault;
 use petsc::{raw, Session};
 use std::ffi::{c_int, CStr};
+use std::ptr::null_mut;
 
-/// The object that a `FetiFeti` points to.
-pub struct HandleObject {
-    magic: u64,
-    comm: raw::MPI_Comm,
-    object: Object,
+/// The data behind a class of handles.
+pub trait Held {
+    /// The name of the class in C; `CLASSCreate` makes its objects.
+    const CLASS: &'static str;
+    /// Distinguishes valid objects from other memory.
+    const MAGIC: u64;
+
+    /// The session on the ranks of the object.
+    fn session(&self) -> &Session;
 }
 
-impl HandleObject {
-    /// An object on the ranks of `comm`.
-    pub fn new(comm: raw::MPI_Comm, session: Session) -> HandleObject {
-        HandleObject {
-            magic: MAGIC,
-            comm,
-            object: Object::new(session),
-        }
+impl Held for Object {
+    const CLASS: &'static str = "FetiFeti";
+    const MAGIC: u64 = 0x4645_5449_4645_5449;
+
+    fn session(&self) -> &Session {
+        &self.session
     }
 }
 
-/// Distinguishes valid objects from other memory.
-const MAGIC: u64 = 0x4645_5449_4645_5449;
+/// The object that a handle points to.
+pub struct HandleObject<T> {
+    magic: u64,
+    comm: raw::MPI_Comm,
+    object: T,
+}
+
+/// A handle of C.
+pub type Pointer<T> = *mut HandleObject<T>;
 
 /// The pointer that C calls `FetiFeti`.
-pub(super) type HandlePointer = *mut HandleObject;
+pub(super) type HandlePointer = Pointer<Object>;
 
-fn held<'a>(ff: HandlePointer) -> Result<&'a mut HandleObject> {
-    let none = || Fault::Null.error("the FetiFeti is NULL, expected one from FetiFetiCreate");
-    // SAFETY: the header asks for NULL or an object of FetiFetiCreate.
-    let held = unsafe { ff.as_mut() }.ok_or_else(none)?;
-    if held.magic != MAGIC {
-        return Err(Fault::Corrupt.error("the FetiFeti is not one that FetiFetiCreate made"));
+/// Puts a handle of an object on the ranks of `comm` to `to`. Collective.
+///
+/// # Safety
+/// `comm` outlives the object, PETSc is between its begin and end, and `to` is NULL or a place for the handle.
+pub unsafe fn create<T: Held>(
+    comm: raw::MPI_Comm,
+    to: *mut Pointer<T>,
+    name: &'static CStr,
+    make: impl FnOnce(Session) -> Result<T>,
+) -> c_int {
+    let code = classified(T::CLASS, Fault::Wrong, |at_work| {
+        // SAFETY: by the caller.
+        let session = unsafe { Session::borrowed(comm) }?;
+        *at_work = Some(session.clone());
+        if to.is_null() {
+            let class = T::CLASS;
+            return Err(Fault::Null.error(format!(
+                "there is no place for the {class}, expected a pointer to one"
+            )));
+        }
+        let object = HandleObject {
+            magic: T::MAGIC,
+            comm,
+            object: make(session)?,
+        };
+        put(to, Box::into_raw(Box::new(object)));
+        Ok(())
+    });
+    raise(code, name, Some(comm))
+}
+
+fn held<'a, T: Held>(handle: Pointer<T>) -> Result<&'a mut HandleObject<T>> {
+    let class = T::CLASS;
+    let none = || {
+        let what = format!("the {class} is NULL, expected one from {class}Create");
+        Fault::Null.error(what)
+    };
+    // SAFETY: the headers ask for NULL or an object of the class.
+    let held = unsafe { handle.as_mut() }.ok_or_else(none)?;
+    if held.magic != T::MAGIC {
+        let what = format!("the {class} is not one that {class}Create made");
+        return Err(Fault::Corrupt.error(what));
     }
     Ok(held)
 }
 
-/// Destroys an object.
-pub(super) fn destroy(ff: HandlePointer) -> Result<()> {
-    held(ff)?.magic = 0;
-    // SAFETY: from Box::into_raw in FetiFetiCreate; whoever calls this forgets it.
-    drop(unsafe { Box::from_raw(ff) });
-    Ok(())
+/// Destroys the object of a handle, which becomes NULL.
+///
+/// # Safety
+/// `at` is NULL, or a pointer to NULL or a handle.
+pub unsafe fn destroy<T: Held>(at: *mut Pointer<T>, name: &'static CStr) -> c_int {
+    // SAFETY: by the caller.
+    if at.is_null() || unsafe { *at }.is_null() {
+        return 0;
+    }
+    // SAFETY: not NULL.
+    let handle = unsafe { *at };
+    let code = classified(T::CLASS, Fault::Wrong, |_| {
+        held(handle)?.magic = 0;
+        // SAFETY: from Box::into_raw in `create`; whoever calls this forgets it.
+        drop(unsafe { Box::from_raw(handle) });
+        put(at, null_mut());
+        Ok(())
+    });
+    raise(code, name, None)
 }
 
 /// A call in which all ranks of the object take part.
-pub(super) fn together(
-    ff: HandlePointer,
+pub fn together<T: Held>(
+    handle: Pointer<T>,
     name: &'static CStr,
-    work: impl FnOnce(&mut Object) -> Result<()>,
+    work: impl FnOnce(&mut T) -> Result<()>,
 ) -> c_int {
-    let comm = held(ff).ok().map(|h| h.comm);
-    let code = classified("fetifeti.h", Fault::Wrong, |at_work| {
-        let object = &mut held(ff)?.object;
-        *at_work = Some(object.session.clone());
+    let comm = held(handle).ok().map(|h| h.comm);
+    let code = classified(T::CLASS, Fault::Wrong, |at_work| {
+        let object = &mut held(handle)?.object;
+        *at_work = Some(object.session().clone());
         work(object)
     });
     raise(code, name, comm)
 }
 
 /// A call that each rank makes for itself.
-pub(super) fn alone(
-    ff: HandlePointer,
+pub fn alone<T: Held>(
+    handle: Pointer<T>,
     name: &'static CStr,
-    work: impl FnOnce(&mut Object) -> Result<()>,
+    work: impl FnOnce(&mut T) -> Result<()>,
 ) -> c_int {
-    let code = classified("fetifeti.h", Fault::Wrong, |_| work(&mut held(ff)?.object));
+    let code = classified(T::CLASS, Fault::Wrong, |_| work(&mut held(handle)?.object));
     raise(code, name, None)
 }
 
@@ -89,7 +149,9 @@ pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [
     Ok(unsafe { std::slice::from_raw_parts(data, n) })
 }
 
-pub(super) fn put<T>(to: *mut T, value: T) {
+/// Puts a result to its place, unless the caller does not want it.
+#[allow(clippy::not_unsafe_ptr_arg_deref)] // the headers ask for NULL or a place
+pub fn put<T>(to: *mut T, value: T) {
     if !to.is_null() {
         // SAFETY: NULL, or a place for the value.
         unsafe { to.write(value) }

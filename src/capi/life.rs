@@ -1,42 +1,30 @@
 //! The functions of `wrappers/fetifeti.h` that create, set up, use and destroy a solver; their manual pages are there.
 
-use super::error::{classified, raise};
-use super::handle::{alone, destroy, lent, not_null, put, together, HandleObject, HandlePointer};
+use super::handle::{alone, create, destroy, lent, not_null, together, HandlePointer};
 use super::monitor::{Function, Monitor};
 use super::object::Object;
 use crate::Result;
-use base::Fault;
-use petsc::{raw, Session};
+use petsc::raw;
 use std::ffi::{c_char, c_int, c_void, CStr};
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut HandlePointer) -> c_int {
     match super::processor() {
-        0 => create(comm, ff),
+        0 => new(comm, ff),
         code => code,
     }
 }
 
 /// Not inlined: whatever it needs stands behind the question for the processor.
 #[inline(never)]
-fn create(comm: raw::MPI_Comm, ff: *mut HandlePointer) -> c_int {
-    let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
-        // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin
-        // and end.
-        let session = unsafe { Session::borrowed(comm) }?;
-        *at_work = Some(session.clone());
-        if ff.is_null() {
-            return Err(
-                Fault::Null.error("there is no place for the FetiFeti, expected a pointer to one")
-            );
-        }
-        put(
-            ff,
-            Box::into_raw(Box::new(HandleObject::new(comm, session))),
-        );
-        Ok(())
-    });
-    raise(code, c"FetiFetiCreate", Some(comm))
+fn new(comm: raw::MPI_Comm, ff: *mut HandlePointer) -> c_int {
+    // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin and
+    // end.
+    unsafe {
+        create(comm, ff, c"FetiFetiCreate", |session| {
+            Ok(Object::new(session))
+        })
+    }
 }
 
 #[no_mangle]
@@ -47,18 +35,8 @@ pub unsafe extern "C" fn FetiFetiCreateFortran(comm: c_int, ff: *mut HandlePoint
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut HandlePointer) -> c_int {
-    // SAFETY: NULL, or a pointer to an object or NULL.
-    if ff.is_null() || unsafe { *ff }.is_null() {
-        return 0;
-    }
-    // SAFETY: not NULL.
-    let handle = unsafe { *ff };
-    let code = classified("FetiFetiDestroy", Fault::Wrong, |_| {
-        destroy(handle)?;
-        put(ff, std::ptr::null_mut());
-        Ok(())
-    });
-    raise(code, c"FetiFetiDestroy", None)
+    // SAFETY: the header asks for NULL, or a pointer to an object or NULL.
+    unsafe { destroy(ff, c"FetiFetiDestroy") }
 }
 
 #[no_mangle]

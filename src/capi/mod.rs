@@ -27,6 +27,8 @@ mod surface;
 mod surfaces;
 mod update;
 
+pub use handle::{alone, create, destroy, put, together, Held, Pointer};
+
 use petsc::raw;
 use std::ffi::{c_char, c_int};
 
@@ -45,7 +47,7 @@ extern "C" {
 const AVX2: c_int = cfg!(target_feature = "avx2") as c_int;
 
 /// Raises an error of PETSc if this processor lacks instructions of this build.
-fn processor() -> c_int {
+pub fn processor() -> c_int {
     // SAFETY: it has no arguments to be wrong.
     unsafe { ff_processor(AVX2) }
 }

@@ -1,5 +1,6 @@
 //! Rows of B_gl: as the problem gives them to the method, and as a solution returns them.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use mpi::topology::SimpleCommunicator;
@@ -222,6 +223,13 @@ impl SolvedRow {
         let mut rows: Vec<SolvedRow> = rows.iter().map(SentRow::row).collect();
         rows.sort_by_key(|row| row.block);
         rows
+    }
+
+    /// The order of rows in reports: by their source, and along the common face or side.
+    pub fn by_place(&self, other: &SolvedRow) -> Ordering {
+        let (a, b) = (&self.label, &other.label);
+        let by_t = |k: usize| a.t[k].total_cmp(&b.t[k]);
+        a.source.cmp(&b.source).then(by_t(1)).then(by_t(0))
     }
 
     /// The rows of all ranks on every one, in order of their blocks. Collective.

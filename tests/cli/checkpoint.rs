@@ -6,10 +6,10 @@ use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
 
-use fetifeti_cli::checkpoint::file::read;
-use fetifeti_cli::checkpoint::Checkpoint;
 use mpi::Scratch;
 use program::run_fetifeti;
+use scene::checkpoint::file::read;
+use scene::Checkpoint;
 use serde_json::Value;
 
 pub const MODEL: &str = "../../examples/scenes/model_contact.toml";

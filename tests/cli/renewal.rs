@@ -6,9 +6,9 @@ use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
 
-use fetifeti_cli::checkpoint::file::read;
 use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti, PATH};
+use scene::checkpoint::{file::read, NoRecords};
 use serde_json::Value;
 
 pub(super) fn run(name: &str, scene: &str, ranks: usize, more: &[&str]) -> (Output, Option<Value>) {
@@ -296,7 +296,7 @@ fn an_interrupted_run_goes_on_with_the_contacts_of_its_step() {
         .args(tight)
         .spawn()
         .expect("the program starts");
-    let at = || read(Path::new(&file)).map_or(0, |c| c.stepper.load_step);
+    let at = || read::<NoRecords>(Path::new(&file)).map_or(0, |c| c.stepper.load_step);
     while at() < 2 && child.try_wait().expect("it can be asked").is_none() {
         std::thread::yield_now();
     }
@@ -320,7 +320,7 @@ fn an_interrupted_run_goes_on_with_the_contacts_of_its_step() {
         }
         near("depth", probe(&resumed, 0)[1], probe(&whole, 0)[1], 1e-7);
         assert_eq!(
-            read(Path::new(&end))
+            read::<NoRecords>(Path::new(&end))
                 .expect("a checkpoint")
                 .stepper
                 .load_step,

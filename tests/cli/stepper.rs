@@ -1,5 +1,7 @@
 //! Load steps by `Stepper` alone: the answers of the program, and those of a run that was interrupted.
 
+use std::rc::Rc;
+
 use super::checkpoint::solve;
 use super::renewal::{blocks, UPDATE};
 use crate::support::checks::number;
@@ -39,10 +41,10 @@ fn steps_are_those_of_the_program() {
         let by_program: Vec<Told> = told_by_program.collect();
         assert_eq!(by_program.len(), 5);
         with_session(move |session| {
-            let scene = Scene::parse("s.toml", &text).expect("a scene");
+            let scene = Rc::new(Scene::parse("s.toml", &text).expect("a scene"));
             let all = || -> base::Result<()> {
                 let mut found = Vec::new();
-                for step in Stepper::new(session, &scene)? {
+                for step in Stepper::new(session, scene.clone())? {
                     let step = step?;
                     assert_eq!(step.step, found.len());
                     assert_eq!(step.time, Some((step.step + 1) as f64 / 5.0));
@@ -50,7 +52,7 @@ fn steps_are_those_of_the_program() {
                     found.push(told(&step));
                 }
                 assert_eq!(found, by_program);
-                let mut stepper = Stepper::new(session, &scene)?;
+                let mut stepper = Stepper::new(session, scene.clone())?;
                 assert_eq!(stepper.checkpoint()?, None);
                 for step in stepper.by_ref().take(2) {
                     step?;
@@ -59,7 +61,7 @@ fn steps_are_those_of_the_program() {
                 let text = serde_json::to_string(&state).expect("names and numbers");
                 let read: StepperState = serde_json::from_str(&text).expect("a state");
                 assert_eq!(read, state);
-                let mut resumed = Stepper::new(session, &scene)?.resume(Some(&read))?;
+                let mut resumed = Stepper::new(session, scene.clone())?.resume(Some(&read))?;
                 assert_eq!(resumed.next_step(), Some(2));
                 for (step, before) in resumed.by_ref().zip(&by_program[2..]) {
                     let now = told(&step?);
@@ -72,7 +74,7 @@ fn steps_are_those_of_the_program() {
                 assert_eq!(resumed.checkpoint()?, None);
                 Ok(())
             };
-            distribution::with_options(session, &scene, all).expect("all steps");
+            distribution::with_options(session, &scene.options, all).expect("all steps");
         });
     }
 }
@@ -81,14 +83,14 @@ fn steps_are_those_of_the_program() {
 fn a_state_of_another_scene_is_refused() {
     with_session(|session| {
         let parse = |n: usize, steps: &str| {
-            Scene::parse("s.toml", &blocks(1.1, 3.15, n, false, steps)).expect("a scene")
+            Rc::new(Scene::parse("s.toml", &blocks(1.1, 3.15, n, false, steps)).expect("a scene"))
         };
         let (scene, other) = (parse(6, UPDATE), parse(4, UPDATE));
-        let mut stepper = Stepper::new(session, &scene).expect("a stepper");
+        let mut stepper = Stepper::new(session, scene.clone()).expect("a stepper");
         stepper.next().expect("a step").expect("a solution");
         let state = stepper.checkpoint().expect("collective");
-        let refused = |scene: &Scene, state: Option<StepperState>, what: &str| {
-            let stepper = Stepper::new(session, scene).expect("a stepper");
+        let refused = |scene: &Rc<Scene>, state: Option<StepperState>, what: &str| {
+            let stepper = Stepper::new(session, scene.clone()).expect("a stepper");
             let error = stepper.resume(state.as_ref()).err().expect("refused");
             assert!(
                 error.is_input() && error.to_string().contains(what),

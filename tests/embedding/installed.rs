@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::mpi::{mpirun, Scratch};
-use crate::support::plugin::{library, number_after};
+use crate::support::plugin::{library, number_after, step_library};
 
 /// An installation below `prefix`, with DESTDIR if it is not empty.
 fn install(scratch: &Scratch, prefix: &str, destdir: &str) -> String {
@@ -18,6 +18,7 @@ pub fn install_to(scratch: &Scratch, prefix: &str, destdir: &str, libdir: &str) 
     for (file, name) in [
         (env!("CARGO_BIN_EXE_fetifeti"), "fetifeti"),
         (&library(), "libfetifeti.so"),
+        (&step_library(), "libfetifeti_step.so"),
     ] {
         let _ = std::os::unix::fs::symlink(file, built.join(name));
     }
@@ -98,24 +99,13 @@ fn nothing_lies_beside_the_prefix_or_knows_the_source_tree() {
     for file in &all {
         names_no_tree(file);
     }
-    let library = prefix.join("lib/libfetifeti.so");
-    let dynamic = run(
-        "readelf",
-        &["-d", &library.display().to_string()],
-        &prefix,
-        "",
-    );
-    assert!(dynamic.contains("[libfetifeti.so.0]"), "{dynamic}");
-    let sections = run(
-        "readelf",
-        &["-S", &library.display().to_string()],
-        &prefix,
-        "",
-    );
-    assert!(
-        !sections.contains(".debug_info"),
-        "the library is not stripped"
-    );
+    for name in ["libfetifeti.so", "libfetifeti_step.so"] {
+        let library = prefix.join("lib").join(name).display().to_string();
+        let dynamic = run("readelf", &["-d", &library], &prefix, "");
+        assert!(dynamic.contains(&format!("[{name}.0]")), "{dynamic}");
+        let sections = run("readelf", &["-S", &library], &prefix, "");
+        assert!(!sections.contains(".debug_info"), "{name} is not stripped");
+    }
 }
 
 #[test]
@@ -149,6 +139,14 @@ fn examples_build_with_what_was_installed() {
     let out = mpirun(2, &bars, &[], &[]);
     let (force, exact) = (number_after(&out, "force"), number_after(&out, "exact"));
     assert!((force - exact).abs() < 1e-6 * exact);
+    let has_ten_steps = |dir: &Path| {
+        let scene = concat!(env!("FETIFETI_ROOT"), "/examples/scenes/press_ramp.toml");
+        let program = dir.join("steps").display().to_string();
+        let out = mpirun(2, &program, &["-scene", scene], &[]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert_eq!(out.stdout.matches("force").count(), 10, "{}", out.all());
+    };
+    has_ten_steps(&examples);
 
     // With CMake, also after the installation was moved.
     let moved = scratch.path("moved");
@@ -166,6 +164,7 @@ fn examples_build_with_what_was_installed() {
         &[],
     );
     assert!((number_after(&out, "force") - 0.1).abs() < 1e-6);
+    has_ten_steps(&cmake);
 
     // What was built there stays, what was installed goes.
     let root = Path::new(env!("FETIFETI_ROOT"));

@@ -16,5 +16,6 @@ mod packages;
 mod partitions;
 mod petsc_examples;
 mod python;
+mod steps;
 mod ways;
 mod wrong_petsc;

@@ -80,7 +80,7 @@ pub fn fate(session: &Session, seed: u64, dir: &Path) -> Fate {
             Ok(scene) => scene,
             Err(e) => return Ok(refused(&e.to_string(), &path)),
         };
-        distribution::with_options(session, &scene, || solved(session, &scene, dir))
+        distribution::with_options(session, &scene.options, || solved(session, &scene, dir))
     };
     let done = catch_unwind(AssertUnwindSafe(work));
     let _ =

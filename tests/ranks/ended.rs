@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use super::faults::whole;
 use crate::support::mpi::{of_petsc, Scratch};
 use crate::support::program::PATH;
-use fetifeti_cli::checkpoint::file::read;
+use scene::checkpoint::{file::read, NoRecords};
 
 /// For hangs only.
 const LIMIT: Duration = Duration::from_secs(300);
@@ -93,7 +93,8 @@ impl Run {
     /// What was written is whole, and no more steps than the checkpoint knows.
     fn is_whole(&self) {
         let steps = whole(&self.scratch.path("out")) - 1;
-        let state = read(Path::new(&self.scratch.path("state"))).expect("a checkpoint");
+        let state =
+            read::<NoRecords>(Path::new(&self.scratch.path("state"))).expect("a checkpoint");
         // Killed between the two, it may have one of them only.
         assert!(
             state.stepper.load_step.abs_diff(steps) <= 1,

@@ -14,6 +14,11 @@ pub fn library() -> String {
     path.display().to_string()
 }
 
+/// The library of load steps that cargo built for this test.
+pub fn step_library() -> String {
+    library().replace("libfetifeti.so", "libfetifeti_step.so")
+}
+
 /// The output of pkg-config for PETSc.
 fn pkg_config(args: &[&str]) -> Vec<String> {
     for name in ["PETSc", "petsc"] {

@@ -16,7 +16,7 @@ from setuptools.dist import Distribution
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE / "src"))
-from fetifeti.library import LIBRARY, PROGRAM, NotFoundError, find_installed  # noqa: E402
+from fetifeti.library import LIBRARY, PROGRAM, STEP_LIBRARY, NotFoundError, find_installed  # noqa: E402
 
 
 def bundled() -> bool:
@@ -51,17 +51,19 @@ def without_paths(file: Path) -> None:
 
 
 class Build(build_py):
-    """Copies the Python sources, and the library if it is wanted; the program, too, if cargo has made it."""
+    """Copies the Python sources, and the library if it is wanted.
+
+    So are the program and the library of load steps, if cargo has made them."""
 
     def run(self) -> None:
         super().run()
         if not bundled():
             return
         if not built(LIBRARY).is_file():
-            # The program needs more than the library: `make install` makes both.
+            # The others need more than the library: `make install` makes all.
             cargo = ["cargo", "build", "--release", "--package", "fetifeti"]
             subprocess.run(cargo, cwd=ROOT, check=True)
-        for file in (LIBRARY, PROGRAM):
+        for file in (LIBRARY, STEP_LIBRARY, PROGRAM):
             if built(file).is_file():
                 to = Path(self.build_lib) / "fetifeti" / file
                 shutil.copy2(built(file), to)

@@ -1,9 +1,10 @@
-//! The base of every crate of fetifeti: the [`Error`] with its exit code, and small linear algebra without MPI and
-//! without PETSc (`linalg`).
+//! The base of every crate of fetifeti: the [`Error`] with its exit code, small linear algebra without MPI and without
+//! PETSc (`linalg`), and files that are written as a whole or not at all (`output`).
 
 pub mod error;
 pub mod linalg;
 pub mod location;
+pub mod output;
 
 pub use error::{Error, ErrorKind, Fault, Result};
 pub use location::Location;
@@ -15,3 +16,6 @@ extern crate self as base;
 #[path = "../../../tests/support/matrices.rs"]
 #[allow(dead_code)]
 mod matrices;
+#[cfg(test)]
+#[path = "../../../tests/support/scratch.rs"]
+mod scratch;

@@ -16,11 +16,7 @@ use scene::{InterfaceShape, Scene};
 /// All rows on rank 0, ordered by interface and t; empty on the other ranks. Collective.
 pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
     let mut rows = SolvedRow::on_first_rank(session.comm(), solution.rows());
-    rows.sort_by(|a, b| {
-        let by_t = |k: usize| a.label.t[k].total_cmp(&b.label.t[k]);
-        let by_source = a.label.source.cmp(&b.label.source);
-        by_source.then(by_t(1)).then(by_t(0))
-    });
+    rows.sort_by(SolvedRow::by_place);
     rows
 }
 

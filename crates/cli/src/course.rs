@@ -51,13 +51,13 @@ pub(super) struct Course {
 
 /// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
 /// is one. Collective.
-pub(super) fn follow<'a>(
+pub(super) fn follow(
     session: &Session,
-    stepper: Stepper<'a>,
+    stepper: Stepper,
     destination: &Destination,
     place: GatherTarget,
     (mut checkpoints, events): (Checkpoints, &Events),
-) -> Result<(Stepper<'a>, Course)> {
+) -> Result<(Stepper, Course)> {
     let mut progress = ProgressLine::new(session.rank() == 0 && !destination.quiet);
     let mut course: Option<Course> = None;
     let mut pvd = destination

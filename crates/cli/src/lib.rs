@@ -1,11 +1,12 @@
 //! The program `fetifeti`: arguments, then run, then an exit code.
 //!
 //! A command reads its scene (`fetifeti-scene`), asks the solver (`fetifeti`) or the laboratory (`fetifeti-lab`), and
-//! hands what they answer to `fetifeti-report`. Checkpoints ([`checkpoint`]) are written and read here.
+//! hands what they answer to `fetifeti-report`. Which checkpoints are written and
+//! read is decided here ([`checkpoint`]).
 
 mod args;
 mod balance;
-pub mod checkpoint;
+mod checkpoint;
 mod coefficient;
 mod contact;
 mod course;

@@ -38,7 +38,7 @@ pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
         destination.prepare()?;
         destination.print(&lines(&scene.sentences()))
     })?;
-    solve(session, &args, &destination, &scene, clock, None)?;
+    solve(session, &args, &destination, scene, clock, None)?;
     Ok(())
 }
 
@@ -86,7 +86,7 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
             step,
             printed,
         };
-        printed = solve(session, args, &of_step, &scene, clock, Some(deck))?;
+        printed = solve(session, args, &of_step, scene, clock, Some(deck))?;
     }
     on_first_rank(session, || match &destination.out {
         Some(dir) if !printed.is_empty() => {
@@ -117,26 +117,26 @@ fn solve(
     session: &Session,
     args: &SolveArguments,
     destination: &Destination,
-    scene: &Scene,
+    scene: Scene,
     clock: Instant,
     deck: Option<FromDeck>,
 ) -> Result<Vec<NodePrint>> {
     let checkpoints = Checkpoints::new(
         session,
         &args.scene,
-        scene,
+        &scene,
         args.checkpoint.as_deref(),
         args.resume.as_deref(),
     )?;
     let events = Events::new(session, args.events.as_deref())?;
     let name = args.scene.display().to_string();
-    session.agree(fits::solved(session, scene, &name))?;
+    session.agree(fits::solved(session, &scene, &name))?;
     let start = Instant::now();
-    let substructures = distribution::substructures(session, scene)?;
+    let substructures = distribution::substructures(session, &scene)?;
     give_back(); // what reading took
     let assemble = start.elapsed().as_secs_f64();
 
-    let solver = FetiFeti::new(session, substructures, Stepper::settings(scene))?;
+    let solver = FetiFeti::new(session, substructures, Stepper::settings(&scene))?;
     give_back(); // lists of the set-up
     let stepper = Stepper::with_solver(scene, solver)?;
     let place = if args.pieces {

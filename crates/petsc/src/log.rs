@@ -62,6 +62,12 @@ impl LogStage {
     /// The stage of this name; repeated calls return the same stage.
     pub fn register(_session: &Session, name: &str) -> Result<LogStage> {
         let id = register(true, name, |id| {
+            // A second library with this crate in the same process may have made it, and PETSc takes a name once.
+            *id = -1;
+            petsc!(PetscLogStageGetId(c_string(name).as_ptr(), id))?;
+            if *id >= 0 {
+                return Ok(());
+            }
             petsc!(PetscLogStageRegister(c_string(name).as_ptr(), id))
         })?;
         Ok(LogStage(id))

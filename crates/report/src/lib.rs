@@ -7,7 +7,6 @@
 //! | module | contents |
 //! |---|---|
 //! | `destination` | the destination of a command's results: terminal, JSON file, directory |
-//! | `output` | files that are written as a whole or not at all; standard output |
 //! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::CompareRow`], [`json::BenchReport`] |
 //! | `interfaces` | the data along interfaces, and their CSV |
 //! | `drawing` | pixels, vectors, text, colours, ticks |
@@ -22,7 +21,6 @@ pub mod destination;
 pub mod drawing;
 pub mod interfaces;
 pub mod json;
-pub mod output;
 pub mod pace;
 pub mod paraview;
 pub mod pictures;
@@ -30,6 +28,12 @@ pub mod plots;
 pub mod progress;
 pub mod tables;
 
+/// Files and standard output.
+pub use base::output;
+
+#[cfg(test)]
+#[path = "../../../tests/support/scratch.rs"]
+mod scratch;
 #[cfg(test)]
 #[path = "../tests/contact.rs"]
 mod tests;

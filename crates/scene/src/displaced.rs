@@ -28,13 +28,13 @@ struct NodeDisplacement {
     u: [f64; 3],
 }
 
-/// Adds the displacements of those of `nodes` that a subdomain has and is the owner of.
+/// Adds the displacements of the `wanted` nodes of which a subdomain is the owner.
 fn nodes_of(
     scene: &Scene,
     sub: &Subdomain,
     u: &[f64],
     scale: f64,
-    nodes: &BTreeSet<usize>,
+    wanted: &dyn Fn(usize) -> bool,
     out: &mut Vec<NodeDisplacement>,
 ) {
     let (body, inside) = scene.place(sub.index);
@@ -48,7 +48,7 @@ fn nodes_of(
                 None => *free.next().expect("a value for every free dof"),
             };
         }
-        if nodes.contains(&node) && body.mesh().owner(node) == inside {
+        if wanted(node) && body.mesh().owner(node) == inside {
             out.push(NodeDisplacement {
                 body: sub.body,
                 node,
@@ -76,7 +76,7 @@ impl Displaced {
         let mut mine = Vec::new();
         for (sub, u) in local.iter().zip(u) {
             if let Some(nodes) = wanted.get(&sub.body) {
-                nodes_of(scene, sub, u, scale, nodes, &mut mine);
+                nodes_of(scene, sub, u, scale, &|n| nodes.contains(&n), &mut mine);
             }
         }
         Displaced::received(gather_all(session.comm(), &mine).concat())
@@ -120,7 +120,7 @@ impl Displaced {
                 continue;
             };
             let mut known = Vec::new();
-            nodes_of(scene, sub, u, scale, nodes, &mut known);
+            nodes_of(scene, sub, u, scale, &|n| nodes.contains(&n), &mut known);
             ranks.iter().for_each(|&r| outgoing[r].extend(&known));
         }
         Displaced::received(exchange(comm, outgoing))
@@ -185,6 +185,30 @@ impl Displaced {
 }
 
 impl Scene {
+    /// The displacements of all nodes of a body after load step `step`, C components each, on every rank; `u` has those
+    /// of each rank's subdomains. Collective.
+    ///
+    /// # Panics
+    /// For a body or a step that the scene does not have.
+    pub fn displacements(
+        &self,
+        session: &Session,
+        local: &[Subdomain],
+        u: &[Vec<f64>],
+        step: usize,
+        body: usize,
+    ) -> Vec<f64> {
+        let (scale, c) = (self.prescribed_factor(step), self.components());
+        let mut mine = Vec::new();
+        let own = local.iter().zip(u).filter(|(sub, _)| sub.body == body);
+        own.for_each(|(sub, u)| nodes_of(self, sub, u, scale, &|_| true, &mut mine));
+        let mut out = vec![0.0; c * self.bodies[body].mesh().n_nodes()];
+        for at in gather_all(session.comm(), &mine).concat() {
+            out[c * at.node..c * (at.node + 1)].copy_from_slice(&at.u[..c]);
+        }
+        out
+    }
+
     /// The sides that may touch of some bodies, as (body, side).
     pub(crate) fn sides_that_may_touch(
         &self,

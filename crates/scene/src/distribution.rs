@@ -16,6 +16,11 @@ pub fn load(session: &Session, path: &Path) -> Result<Scene> {
     given(session, path, fits::load(session, path))
 }
 
+/// Reads the scene and leaves the database as it is, for [`with_options`]. Collective.
+pub fn read(session: &Session, path: &Path) -> Result<Scene> {
+    agreed(session, path, fits::load(session, path))
+}
+
 /// [`load`] for a program that needs the rows of the rank's own points alone.
 pub fn load_part(session: &Session, path: &Path) -> Result<Scene> {
     let mut cyclic = false;
@@ -36,9 +41,15 @@ pub fn load_part(session: &Session, path: &Path) -> Result<Scene> {
 
 /// The scene that all ranks have read, with its options in the database.
 fn given(session: &Session, path: &Path, read: Result<Scene>) -> Result<Scene> {
+    let scene = agreed(session, path, read)?;
+    set_options(session, &scene.options)?;
+    Ok(scene)
+}
+
+/// The scene that all ranks have read.
+fn agreed(session: &Session, path: &Path, read: Result<Scene>) -> Result<Scene> {
     let scene = session.agree(read)?;
     same_on_all_ranks(session, path, &scene)?;
-    set_options(session, &scene)?;
     Ok(scene)
 }
 
@@ -78,14 +89,14 @@ pub fn same_on_all_ranks(session: &Session, path: &Path, scene: &Scene) -> Resul
     )))
 }
 
-/// Calls `work` with the options of the scene in the database, below those of the user, and removes them afterwards. It
+/// Calls `work` with the options of a scene in the database, below those of the user, and removes them afterwards. It
 /// serves programs that process several scenes.
 pub fn with_options<T>(
     session: &Session,
-    scene: &Scene,
+    options: &[(String, String)],
     work: impl FnOnce() -> Result<T>,
 ) -> Result<T> {
-    let set = set_options(session, scene)?;
+    let set = set_options(session, options)?;
     let done = work();
     for name in set {
         Options::new(session, "").clear_value(name)?;
@@ -94,11 +105,11 @@ pub fn with_options<T>(
 }
 
 /// Returns the names of the options that the user has not set.
-fn set_options<'a>(session: &Session, scene: &'a Scene) -> Result<Vec<&'a str>> {
-    let options = Options::new(session, "");
+fn set_options<'a>(session: &Session, options: &'a [(String, String)]) -> Result<Vec<&'a str>> {
+    let database = Options::new(session, "");
     let mut set = Vec::new();
-    for (name, value) in &scene.options {
-        if options.set_default(name, value)? {
+    for (name, value) in options {
+        if database.set_default(name, value)? {
             set.push(name.as_str());
         }
     }

@@ -18,6 +18,7 @@ pub mod assembly;
 mod axis;
 mod body;
 mod checked;
+pub mod checkpoint;
 mod coefficient;
 mod cut;
 pub(crate) mod deck;
@@ -54,6 +55,7 @@ pub use mesh;
 
 pub use body::Body;
 pub use checked::Scene;
+pub use checkpoint::Checkpoint;
 pub use deck::DeckScenes;
 pub use displaced::Displaced;
 pub use equilibrium::{Forces, Wrench};

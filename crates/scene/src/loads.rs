@@ -15,8 +15,7 @@ use base::Result;
 
 /// The loads of some subdomains over the load steps. The meshes, and the columns of K at given values, are built once;
 /// each step evaluates loads and scales given values.
-pub struct Stepping<'a> {
-    scene: &'a Scene,
+pub struct Stepping {
     subdomains: Vec<Stepped>,
 }
 
@@ -59,15 +58,12 @@ impl SteppedMesh {
     }
 }
 
-impl<'a> Stepping<'a> {
-    /// Builds the meshes of some subdomains.
+impl Stepping {
+    /// Builds the meshes of some subdomains of a scene.
     ///
     /// # Errors
     /// As [`Scene::subdomain_mesh`].
-    pub fn new(
-        scene: &'a Scene,
-        subdomains: impl IntoIterator<Item = usize>,
-    ) -> Result<Stepping<'a>> {
+    pub fn new(scene: &Scene, subdomains: impl IntoIterator<Item = usize>) -> Result<Stepping> {
         let build = |index| {
             let mesh = SteppedMesh::new(scene, index)?;
             let columns = assembly::given_columns(&mesh.mesh);
@@ -75,23 +71,22 @@ impl<'a> Stepping<'a> {
         };
         let subdomains: Result<Vec<Stepped>> = subdomains.into_iter().map(build).collect();
         Ok(Stepping {
-            scene,
             subdomains: subdomains?,
         })
     }
 
-    /// The loads of the subdomains at load step `step` (without `[steps]` the only step is 0), with given values
-    /// eliminated. At the last step they are those of [`Scene::subdomain`] to the last bit.
+    /// The loads of the subdomains of this scene at load step `step` (without `[steps]` the only step is 0), with given
+    /// values eliminated. At the last step they are those of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a load that is not finite, or a step that the scene does not
     /// have.
-    pub fn loads(&mut self, step: usize) -> Result<Vec<Vec<f64>>> {
-        let factors = Factors::of(&self.scene.steps, step)?;
+    pub fn loads(&mut self, scene: &Scene, step: usize) -> Result<Vec<Vec<f64>>> {
+        let factors = Factors::of(&scene.steps, step)?;
         let scale = factors.dirichlet();
         let load = |s: &mut Stepped| {
             let mesh = s.mesh.at(scale);
-            let load = self.scene.nodal_load(mesh, factors)?;
+            let load = scene.nodal_load(mesh, factors)?;
             Ok(assembly::free_load(mesh, &s.columns, &load))
         };
         self.subdomains.iter_mut().map(load).collect()
@@ -127,7 +122,7 @@ impl Scene {
     /// # Errors
     /// As [`Stepping::loads`].
     pub fn loads(&self, index: usize, step: usize) -> Result<Vec<f64>> {
-        Ok(Stepping::new(self, [index])?.loads(step)?.remove(0))
+        Ok(Stepping::new(self, [index])?.loads(self, step)?.remove(0))
     }
 
     /// The resultant force on subdomain `index` at load step `step`, by components and including its side loads, and

@@ -174,7 +174,8 @@ impl Run<'_> {
     /// The problem of a load step with the present contacts.
     fn problem(&self, whole: &Problem, step: usize) -> Result<Problem> {
         let mut problem = whole.clone();
-        let loads = Stepping::new(self.scene, 0..self.scene.n_subdomains())?.loads(step)?;
+        let mut loads = Stepping::new(self.scene, 0..self.scene.n_subdomains())?;
+        let loads = loads.loads(self.scene, step)?;
         for (sub, f) in problem.local.iter_mut().zip(loads) {
             sub.f = f;
         }

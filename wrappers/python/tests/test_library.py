@@ -34,18 +34,23 @@ def test_version_is_that_of_the_header():
 
 def test_abi_is_that_of_the_library():
     assert f"ABI: u32 = {_version.ABI};" in (SOURCES / "packaging" / "abi.rs").read_text()
-    assert library.soname(library.find_library()) == f"libfetifeti.so.{_version.ABI}"
+    for file in (library.LIBRARY, library.STEP_LIBRARY):
+        assert library.soname(library.find_library().with_name(file)) == f"{file}.{_version.ABI}"
 
 
 def test_every_function_of_the_header_is_called():
-    from fetifeti.calls import SIGNATURES
+    from fetifeti.calls import SIGNATURES, STEP_SIGNATURES
 
-    header = (SOURCES / "wrappers" / "fetifeti.h").read_text()
-    functions = re.findall(r"PETSC_EXTERN PetscErrorCode (\w+)\((.*?)\);", header, re.S)
-    of_python = {name: len(arguments) for name, arguments in SIGNATURES.items()}
-    of_c = {name: 0 if given == "void" else given.count(",") + 1 for name, given in functions}
-    of_c.pop("FetiFetiCreate")  # its communicator is no integer; Python has that of Fortran
-    assert of_python == of_c
+    for path, create, signatures in (
+        ("fetifeti.h", "FetiFetiCreate", SIGNATURES),
+        ("step/fetifeti_step.h", "FetiFetiStepCreate", STEP_SIGNATURES),
+    ):
+        header = (SOURCES / "wrappers" / path).read_text()
+        functions = re.findall(r"PETSC_EXTERN PetscErrorCode (\w+)\((.*?)\);", header, re.S)
+        of_python = {name: len(arguments) for name, arguments in signatures.items()}
+        of_c = {name: 0 if given == "void" else given.count(",") + 1 for name, given in functions}
+        of_c.pop(create)  # its communicator is no integer; Python has that of Fortran
+        assert of_python == of_c
 
 
 def test_all_places_are_named(nowhere):
@@ -94,6 +99,9 @@ def test_files_that_are_no_library_of_ours_are_refused(nowhere, monkeypatch):
     (nowhere / "text").write_text("no library")
     with pytest.raises(fetifeti.NotFoundError, match="no shared library"):
         library.soname(nowhere / "text")
+    monkeypatch.setenv("FETIFETI_LIBRARY", str(nowhere / "text"))
+    with pytest.raises(fetifeti.NotFoundError, match="libfetifeti_step.so is not there, expected it beside"):
+        library.load.__wrapped__(library.STEP_LIBRARY)
     other = next(Path("/lib").glob("*/libc.so.6"), None)
     if other is not None:
         monkeypatch.setenv("FETIFETI_LIBRARY", str(other))

@@ -35,13 +35,14 @@ impl Solved {
         settings: &MethodSettings,
     ) -> Result<Solved> {
         let scene = session.agree(scene(name, text))?;
-        let (solver, solution, seconds) = distribution::with_options(session, &scene, || {
-            let clock = Instant::now();
-            let substructures = distribution::substructures(session, &scene)?;
-            let mut solver = FetiFeti::new(session, substructures, settings.clone())?;
-            let solution = solver.solve()?;
-            Ok((solver, solution, clock.elapsed().as_secs_f64()))
-        })?;
+        let (solver, solution, seconds) =
+            distribution::with_options(session, &scene.options, || {
+                let clock = Instant::now();
+                let substructures = distribution::substructures(session, &scene)?;
+                let mut solver = FetiFeti::new(session, substructures, settings.clone())?;
+                let solution = solver.solve()?;
+                Ok((solver, solution, clock.elapsed().as_secs_f64()))
+            })?;
         Ok(Solved {
             scene,
             solver,

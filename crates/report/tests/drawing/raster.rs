@@ -96,7 +96,7 @@ fn text_sits_where_it_is_anchored() {
 
 #[test]
 fn png_has_its_size() {
-    let dir = crate::output::tests::Scratch::new("raster");
+    let dir = crate::scratch::Scratch::new("raster");
     let path = dir.0.join("a.png");
     let mut raster = Raster::new(7.0, 5.0, 2.0);
     raster.set(3, 2, RED);

@@ -1,7 +1,7 @@
 //! Unit tests of `crates/report/src/paraview/pvd.rs`.
 
 use super::*;
-use crate::output::tests::Scratch;
+use crate::scratch::Scratch;
 
 #[test]
 fn the_file_is_complete_after_every_step() {

@@ -1,7 +1,7 @@
 //! Unit tests of `crates/report/src/pictures/contact_map.rs`.
 
 use super::*;
-use crate::output::tests::Scratch;
+use crate::scratch::Scratch;
 
 /// An interface of n × n elements on the unit square with pressure max(1 − 4 r², 0) around its middle.
 fn sample(name: &str, n: usize, size: f64) -> ContactMap {

@@ -112,7 +112,7 @@ fn a_million_cells_are_painted() {
     let mesh = grid(2, 2, 256, false); // 2×2 bodies of 2×2 subdomains of 256²: 1024² cells
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
     let rho = vec![1.0; mesh.quads.len()];
-    let dir = crate::output::tests::Scratch::new("field");
+    let dir = crate::scratch::Scratch::new("field");
     write(
         &Beside::default(),
         &mesh.view(),

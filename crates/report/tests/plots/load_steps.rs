@@ -1,7 +1,7 @@
 //! Unit tests of `crates/report/src/plots/load_steps.rs`.
 
 use super::*;
-use crate::output::tests::Scratch;
+use crate::scratch::Scratch;
 
 #[test]
 fn counts_are_round() {

@@ -100,7 +100,7 @@ fn what_cannot_be_shown_interrupts_the_line() {
 
 #[test]
 fn both_files_are_written() {
-    let dir = crate::output::tests::Scratch::new("plot");
+    let dir = crate::scratch::Scratch::new("plot");
     let paths = figure(Scale::Linear, vec![])
         .save(&dir.0.join("sub/fig.v1"))
         .unwrap();

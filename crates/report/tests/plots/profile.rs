@@ -1,7 +1,7 @@
 //! Unit tests of `crates/report/src/plots/profile.rs`.
 
 use super::*;
-use crate::output::tests::Scratch;
+use crate::scratch::Scratch;
 
 /// An interface of n nodes on 0..1 that touches in the middle half, with a force that grows with `size`.
 fn sample(name: &str, n: usize, size: f64) -> InterfaceProfile {

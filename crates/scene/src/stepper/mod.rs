@@ -19,6 +19,7 @@ mod state;
 
 use std::collections::BTreeMap;
 use std::mem::replace;
+use std::rc::Rc;
 
 use super::checked::Scene;
 use super::displaced::Displaced;
@@ -53,6 +54,7 @@ const DIRECTIONS: usize = 30;
 /// ```
 /// use fetifeti::Session;
 /// use fetifeti_scene::{Scene, Stepper};
+/// use std::rc::Rc;
 ///
 /// const SCENE: &str = r#"
 ///     physics = "elasticity"
@@ -81,9 +83,9 @@ const DIRECTIONS: usize = 30;
 ///
 /// fn main() -> fetifeti::Result<()> {
 ///     let session = Session::new(&[], "")?;
-///     let scene = Scene::parse("blocks.toml", SCENE)?;
+///     let scene = Rc::new(Scene::parse("blocks.toml", SCENE)?);
 ///     let mut energies = Vec::new();
-///     for step in Stepper::new(&session, &scene)? {
+///     for step in Stepper::new(&session, scene.clone())? {
 ///         let step = step?;
 ///         assert!(step.solution.converged());
 ///         assert!(step.solution.rows().iter().any(|row| row.holds()));
@@ -95,10 +97,10 @@ const DIRECTIONS: usize = 30;
 ///     }
 ///
 ///     // Interrupted after the first step, and resumed.
-///     let mut stepper = Stepper::new(&session, &scene)?;
+///     let mut stepper = Stepper::new(&session, scene.clone())?;
 ///     stepper.next().transpose()?;
 ///     let state = stepper.checkpoint()?;
-///     let mut resumed = Stepper::new(&session, &scene)?.resume(state.as_ref())?;
+///     let mut resumed = Stepper::new(&session, scene.clone())?.resume(state.as_ref())?;
 ///     let last = resumed.next().transpose()?.expect("the second step");
 ///     assert_eq!(last.step, 1);
 ///     assert!((last.energy - energies[1]).abs() < 1e-6);
@@ -106,11 +108,11 @@ const DIRECTIONS: usize = 30;
 ///     Ok(())
 /// }
 /// ```
-pub struct Stepper<'a> {
-    contacts: Renewed<'a>,
+pub struct Stepper {
+    contacts: Renewed,
     solver: FetiFeti,
     /// The loads of the steps; the solver has those of a single one.
-    loads: Option<Stepping<'a>>,
+    loads: Option<Stepping>,
     /// This rank's subdomains, increasing.
     mine: Vec<usize>,
     /// The present load step, and where its contact loop starts.
@@ -148,16 +150,17 @@ pub struct StepSolution {
     pub renewal: Option<RenewalCost>,
 }
 
-impl<'a> Stepper<'a> {
+impl Stepper {
     /// Assembles the scene, whose options must be in the database ([`distribution::load`]), and sets a solver up.
     /// Collective.
     ///
     /// # Errors
     /// As [`distribution::substructures`] and [`FetiFeti::new`].
-    pub fn new(session: &Session, scene: &'a Scene) -> Result<Stepper<'a>> {
-        session.agree(fits::solved(session, scene, &scene.title))?;
-        let problem = distribution::substructures(session, scene)?;
-        let solver = FetiFeti::new(session, problem, Stepper::settings(scene))?;
+    pub fn new(session: &Session, scene: impl Into<Rc<Scene>>) -> Result<Stepper> {
+        let scene = scene.into();
+        session.agree(fits::solved(session, &scene, &scene.title))?;
+        let problem = distribution::substructures(session, &scene)?;
+        let solver = FetiFeti::new(session, problem, Stepper::settings(&scene))?;
         Stepper::with_solver(scene, solver)
     }
 
@@ -170,11 +173,12 @@ impl<'a> Stepper<'a> {
     ///
     /// # Errors
     /// As [`Scene::subdomain_mesh`].
-    pub fn with_solver(scene: &'a Scene, solver: FetiFeti) -> Result<Stepper<'a>> {
+    pub fn with_solver(scene: impl Into<Rc<Scene>>, solver: FetiFeti) -> Result<Stepper> {
+        let scene = scene.into();
         let local = || solver.problem().local.iter().map(|s| s.index);
         let mut mine: Vec<usize> = local().collect();
         mine.sort_unstable();
-        let many = (scene.n_steps() > 1).then(|| Stepping::new(scene, local()));
+        let many = (scene.n_steps() > 1).then(|| Stepping::new(&scene, local()));
         Ok(Stepper {
             loads: solver.session().agree(many.transpose())?,
             contacts: Renewed::new(scene),
@@ -193,7 +197,7 @@ impl<'a> Stepper<'a> {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a state that contradicts itself or is of another scene; those
     /// of [`Scene::renew`].
-    pub fn resume(mut self, state: Option<&StepperState>) -> Result<Stepper<'a>> {
+    pub fn resume(mut self, state: Option<&StepperState>) -> Result<Stepper> {
         let session = self.solver.session().clone();
         let n = self.contacts.scene().n_steps();
         let state = state.filter(|_| session.rank() == 0);
@@ -241,7 +245,10 @@ impl<'a> Stepper<'a> {
             cost
         });
         if let Some(loads) = &mut self.loads {
-            let loads = self.solver.session().agree(loads.loads(self.step))?;
+            let loads = self
+                .solver
+                .session()
+                .agree(loads.loads(self.contacts.scene(), self.step))?;
             let gaps = self.contacts.scene().gaps(&owns, self.step)?;
             self.solver.set_loads(loads, &gaps);
         }
@@ -343,7 +350,7 @@ impl<'a> Stepper<'a> {
     }
 }
 
-impl Iterator for Stepper<'_> {
+impl Iterator for Stepper {
     type Item = Result<StepSolution>;
 
     fn next(&mut self) -> Option<Result<StepSolution>> {

@@ -2,6 +2,7 @@
 //! where its loop starts.
 
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::time::Instant;
 
 use crate::checked::Scene;
@@ -15,10 +16,9 @@ use parallel::exchange::total;
 use petsc::Session;
 
 /// A scene whose contacts are renewed, or stay as they are.
-pub(super) struct Renewed<'a> {
-    scene: &'a Scene,
+pub(super) struct Renewed {
     /// The scene with the contacts of the present load step.
-    present: Option<Box<Scene>>,
+    scene: Rc<Scene>,
     /// The displacements at the end of the last step, and those for which the present contacts were made.
     end: Displaced,
     start: Displaced,
@@ -36,11 +36,10 @@ pub struct RenewalCost {
     pub factored: usize,
 }
 
-impl<'a> Renewed<'a> {
-    pub fn new(scene: &'a Scene) -> Renewed<'a> {
+impl Renewed {
+    pub fn new(scene: Rc<Scene>) -> Renewed {
         Renewed {
             scene,
-            present: scene.is_renewed().then(|| Box::new(scene.clone())),
             end: Displaced::default(),
             start: Displaced::default(),
             last: None,
@@ -49,7 +48,7 @@ impl<'a> Renewed<'a> {
 
     /// The scene with the present contacts.
     pub fn scene(&self) -> &Scene {
-        self.present.as_deref().unwrap_or(self.scene)
+        &self.scene
     }
 
     /// Notes the end of a step with these displacements; returned are those since the present contacts were made.
@@ -77,7 +76,7 @@ impl<'a> Renewed<'a> {
         step: usize,
         left: Displaced,
     ) -> Result<()> {
-        if self.present.is_none() {
+        if !self.scene.is_renewed() {
             return Ok(());
         }
         self.end = left;
@@ -88,7 +87,9 @@ impl<'a> Renewed<'a> {
 
     /// Renews the contacts at the displacements of the end of the last step. Collective.
     fn renew_at_end(&mut self, session: &Session, step: usize) -> Result<()> {
-        if let Some(scene) = &mut self.present {
+        if self.scene.is_renewed() {
+            // Whoever shares the scene keeps it with the contacts that it began with.
+            let scene = Rc::make_mut(&mut self.scene);
             session.agree(scene.renew(&self.end, step))?;
             self.start.clone_from(&self.end);
         }
@@ -158,7 +159,7 @@ impl<'a> Renewed<'a> {
 
     /// An error of load step `step`, from 0: with renewed contacts it says which step that is.
     pub fn at_step(&self, step: usize, error: Error) -> Error {
-        if self.present.is_none() || step == 0 || !error.is_input() {
+        if !self.scene.is_renewed() || step == 0 || !error.is_input() {
             return error;
         }
         Error::input(format!(

@@ -3,7 +3,7 @@
 Two ways in, which need different things:
 
 - `Solver` and `register` work inside a program on petsc4py, with its matrices and vectors. They load
-  ``libfetifeti.so``.
+  ``libfetifeti.so``. `Scene.steps` solves the load steps of a scene there, and loads ``libfetifeti_step.so``.
 - `solve` and `Scene` run the program ``fetifeti`` on a scene file and read what it writes. They need NumPy only, and
   start no MPI in this process.
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .calls import ContactStep, Error
     from .contact import RowKind
     from .solver import MortarResult, Solver
+    from .steps import LoadStep, LoadSteps
 
 _PLACES = {
     "register": "ksp",
@@ -36,6 +37,8 @@ _PLACES = {
     "RowKind": "contact",
     "ContactStep": "calls",
     "MortarResult": "solver",
+    "LoadStep": "steps",
+    "LoadSteps": "steps",
 }
 
 __all__ = [

@@ -1,15 +1,16 @@
-"""Calls of the functions of fetifeti.h: their arguments, and errors as exceptions."""
+"""Calls of the functions of fetifeti.h and fetifeti_step.h: their arguments, and errors as exceptions."""
 
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from petsc4py import PETSc
 
-from .library import load
+from .library import LIBRARY, STEP_LIBRARY, load
 
 DECIDE = -1
 """PETSC_DECIDE."""
@@ -64,6 +65,24 @@ SIGNATURES: dict[str, list[Any]] = {
     "FetiFetiGetInnerKSP": [_P, _P],
 }
 
+STEP_SIGNATURES: dict[str, list[Any]] = {
+    "FetiFetiStepCreateFortran": [_I, _S, _P],
+    "FetiFetiStepDestroy": [_P],
+    "FetiFetiStepNext": [_P, _P],
+    "FetiFetiStepGetNumber": [_P, _P],
+    "FetiFetiStepGetTime": [_P, _P],
+    "FetiFetiStepGetEnergy": [_P, _P],
+    "FetiFetiStepGetIterations": [_P, _P],
+    "FetiFetiStepGetConvergedReason": [_P, _P, _P],
+    "FetiFetiStepGetBodies": [_P, _P],
+    "FetiFetiStepGetBody": [_P, _I, _P, _P, _P],
+    "FetiFetiStepGetCoordinates": [_P, _I, _I, _P],
+    "FetiFetiStepGetDisplacements": [_P, _I, _I, _P],
+    "FetiFetiStepGetContact": [_P, _P, _P],
+    "FetiFetiStepCheckpoint": [_P, _S],
+    "FetiFetiStepResume": [_P, _S],
+}
+
 
 class ContactStep(ctypes.Structure):
     """A step of the contact loop, as `Solver.on_step` gets it."""
@@ -105,14 +124,14 @@ class Error(PETSc.Error):
 
 
 @lru_cache(maxsize=None)
-def _library() -> ctypes.PyDLL:
+def _library(file: str) -> ctypes.PyDLL:
     if np.dtype(PETSc.IntType) != np.int32 or np.dtype(PETSc.ScalarType) != np.float64:
         raise ImportError(
             f"petsc4py has {np.dtype(PETSc.ScalarType)} numbers and {np.dtype(PETSc.IntType)} indices, "
             "expected float64 and int32, with which fetifeti is built"
         )
-    library = load()
-    for name, arguments in SIGNATURES.items():
+    library = load(file)
+    for name, arguments in (SIGNATURES if file == LIBRARY else STEP_SIGNATURES).items():
         function = getattr(library, name)
         function.argtypes, function.restype = arguments, _I
     return library
@@ -126,13 +145,13 @@ def call(name: str, *arguments: Any) -> None:
     Error
         The function returned an error code.
     """
-    function = getattr(_library(), name)
+    function = getattr(_library(STEP_LIBRARY if name in STEP_SIGNATURES else LIBRARY), name)
     trace = PETSc.Error._traceback_
     del trace[:]
     code = function(*[_argument(a) for a in arguments])
     if code:
         # petsc4py keeps what PETSc's error handler was given, the sentence last.
-        text = trace[-1].split("] ", 1)[-1] if trace else PETSc.Error(code).args[-1]
+        text = re.sub(r"^\[\d+\] ", "", trace[-1]) if trace else PETSc.Error(code).args[-1]
         raise Error(name, code, str(text))
 
 

@@ -14,6 +14,8 @@ from pathlib import Path
 from ._version import ABI, VERSION
 
 LIBRARY = "libfetifeti.so"
+STEP_LIBRARY = "libfetifeti_step.so"
+"""The load steps of scenes; it lies beside the other one."""
 PROGRAM = "fetifeti"
 
 
@@ -137,8 +139,8 @@ def _fits(version: str) -> bool:
 
 
 @lru_cache(maxsize=None)
-def load() -> ctypes.PyDLL:
-    """Loads the library, once.
+def load(file: str = LIBRARY) -> ctypes.PyDLL:
+    """Loads the library of this name, once.
 
     Raises
     ------
@@ -146,8 +148,12 @@ def load() -> ctypes.PyDLL:
         It is not there, the loader refuses it, or it has another interface.
     """
     path = find_library()
+    if file != LIBRARY:
+        path = path.with_name(file)
+        if not path.is_file():
+            raise NotFoundError(f"{path} is not there, expected it beside {LIBRARY}: 'make install' brings both")
     name = soname(path)
-    expected = f"{LIBRARY}.{ABI}"
+    expected = f"{file}.{ABI}"
     if name != expected:
         raise NotFoundError(f"{path} calls itself '{name}', expected '{expected}': this package is version {VERSION}")
     try:

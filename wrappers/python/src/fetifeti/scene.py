@@ -1,6 +1,7 @@
 """Scenes: the program ``fetifeti`` solves a scene file, and what it writes comes back as arrays.
 
-The program runs beside this process, with MPI of its own: nothing here starts MPI, or prints.
+The program runs beside this process, with MPI of its own: nothing here starts MPI, or prints, but `Scene.steps`, which
+solves in this process.
 """
 
 from __future__ import annotations
@@ -15,13 +16,16 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .library import find_program
 from .progress import Steps
 from .vtu import Fields, read_vtu
+
+if TYPE_CHECKING:
+    from .steps import LoadStep, LoadSteps
 
 OnStep = Callable[[dict[str, Any]], Any]
 """Gets the record of a step of the contact loop: an entry of ``report["contact"]["steps"]``."""
@@ -48,9 +52,12 @@ class NotConvergedError(SceneError):
     ----------
     result : Result or None
         What was written: partial.
+    step : LoadStep or None
+        Of `Scene.steps`: the load step as it is.
     """
 
     result: Result | None = None
+    step: LoadStep | None = None
 
 
 class InputError(SceneError, ValueError):
@@ -201,6 +208,44 @@ class Scene:
     ) -> Result:
         """Solves the scene; see `solve`."""
         return solve(self.path, options, ranks, on_step, out=out)
+
+    def steps(
+        self,
+        options: Mapping[str, Any] | None = None,
+        comm: Any = None,
+        *,
+        resume: str | Path | None = None,
+    ) -> LoadSteps:
+        """Solves the load steps of the scene in this process, one after the other. Needs petsc4py. Collective.
+
+        Parameters
+        ----------
+        options : dict, optional
+            As in `solve`; they are put into PETSc's database, and stay there.
+        comm : PETSc.Comm or mpi4py.MPI.Comm, optional
+            The communicator; PETSc's world if it is left out.
+        resume : str or Path, optional
+            A file of `LoadStep.checkpoint` or of the program's ``--checkpoint``: the first step is the one after it.
+
+        Returns
+        -------
+        LoadSteps
+            An iterator over `LoadStep`: each is solved when it is asked for, from the end of the one before.
+
+        Raises
+        ------
+        InputError
+            The scene is wrong, or the file is no checkpoint of it.
+        NotConvergedError
+            A step has not converged, when it is asked for; no step follows. The error's ``step`` has it.
+        ProgramError
+            MPI, the disk.
+        NotFoundError
+            petsc4py or the library are nowhere.
+        """
+        import fetifeti
+
+        return fetifeti.LoadSteps(self, options, comm, resume=resume)
 
 
 def solve(

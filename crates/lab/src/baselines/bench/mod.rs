@@ -127,7 +127,7 @@ impl BenchInput {
             Ok((name, full, None, scene))
         };
         let (name, file, home, scene) = session.agree(read())?;
-        let plan = distribution::with_options(session, &scene, || {
+        let plan = distribution::with_options(session, &scene.options, || {
             BaselinePlan::new(session, &scene, baselines, Layouts::Three)
         })?;
         Ok(BenchInput {

@@ -1,39 +1,22 @@
 //! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file holds the state of the stepper ([`StepperState`]) and the records of everything before. It belongs to a
-//! scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
-//!
-//! [`mod@file`] writes a checkpoint file, and checks and reads it. This file decides whether a checkpoint belongs to a
-//! scene, and resumes from it.
+//! A file ([`scene::checkpoint`]) holds the state of the stepper, and here the records of everything before.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use base::{Error, Location, Result};
+use base::{output, Error, Location, Result};
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use parallel::exchange::gather_all;
 use petsc::Session;
 use report::json::contact::{LoadStep, OuterStep};
-use report::output;
+use scene::checkpoint::{file, identity};
 use scene::stepper::Checkpointer;
-use scene::{Field, Scene, Stepper, StepperState};
+use scene::{Scene, Stepper, StepperState};
 
-pub mod file;
-
-/// The content of a checkpoint: everything that a run needs to resume.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint {
-    /// Title of the scene, for messages.
-    pub title: String,
-    /// Fingerprint of the scene.
-    pub scene: u64,
-    /// The records up to this state.
-    #[serde(default)]
-    pub records: Records,
-    /// The load step, and the state of the contact loop in it.
-    pub stepper: StepperState,
-}
+/// A checkpoint of the program.
+type Checkpoint = scene::Checkpoint<Records>;
 
 /// The files that the command line names, checked before the solve.
 pub struct Checkpoints {
@@ -49,6 +32,7 @@ pub struct Checkpoints {
 
 /// The part of a run's report that was made before a checkpoint.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Records {
     /// Steps of the contact loop.
     pub outer: Vec<OuterStep>,
@@ -118,12 +102,7 @@ impl Checkpoints {
                 path.display()
             )));
         }
-        let text = std::fs::read_to_string(path).map_err(|e| {
-            Error::input("the scene cannot be read")
-                .at(Location::file_named(path.display().to_string()))
-                .because(e)
-        })?;
-        self.scene = identity(&text, scene)?;
+        self.scene = identity(path, scene)?;
         if let Some(file) = &self.file {
             if output::is_stdout(file) {
                 return Err(Error::input(
@@ -133,22 +112,7 @@ impl Checkpoints {
             output::prepare_file(file)?;
         }
         if let Some(file) = &self.resume {
-            let found = file::read(file)?;
-            let name = file.display();
-            if found.scene != self.scene {
-                return Err(Error::input(format!(
-                    "{name}: the checkpoint belongs to the scene \"{}\"{}, expected one of \"{}\" ({})",
-                    found.title,
-                    if found.title == scene.title {
-                        " as it was before it changed"
-                    } else {
-                        ""
-                    },
-                    scene.title,
-                    path.display()
-                )));
-            }
-            self.found = Some(found);
+            self.found = Some(Checkpoint::of_scene(file, path, scene, self.scene)?);
         }
         Ok(())
     }
@@ -158,11 +122,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// A checkpoint whose rows are not those of the solver, contacts that cannot be renewed.
-    pub fn resume<'a>(
-        &mut self,
-        session: &Session,
-        stepper: Stepper<'a>,
-    ) -> Result<(Stepper<'a>, Records)> {
+    pub fn resume(&mut self, session: &Session, stepper: Stepper) -> Result<(Stepper, Records)> {
         let Some(file) = &self.resume else {
             return Ok((stepper, Records::default()));
         };
@@ -231,42 +191,3 @@ impl Checkpoints {
         session.agree(state.map_or(Ok(()), write))
     }
 }
-
-/// A hash of what is solved: the scene, and the content of each file with coefficients that it reads.
-fn identity(text: &str, scene: &Scene) -> Result<u64> {
-    let specs = scene.bodies.iter().map(|body| &body.spec);
-    let fields = specs.flat_map(|spec| [&spec.rho, &spec.poisson]);
-    let files = fields.filter_map(|field| match field {
-        Field::Cells(cells) => cells.file(),
-        _ => None,
-    });
-    let mut out = fingerprint(text);
-    // Bodies of a grid read the same file.
-    let mut known: Vec<&Path> = Vec::new();
-    for path in files {
-        if !known.contains(&path) {
-            known.push(path);
-            let content = file::hash_of(path)?;
-            out = file::hash(&[out.to_le_bytes(), content.to_le_bytes()].concat());
-        }
-    }
-    Ok(out)
-}
-
-/// A hash of the scene as text: comments, layout, title and PETSc options do not change it.
-fn fingerprint(text: &str) -> u64 {
-    match text.parse::<toml::Table>() {
-        Ok(mut table) => {
-            for key in ["title", "name", "options"] {
-                table.remove(key);
-            }
-            file::hash(table.to_string().as_bytes())
-        }
-        // Unreachable: the scene was read from this text.
-        Err(_) => file::hash(text.as_bytes()),
-    }
-}
-
-#[cfg(test)]
-#[path = "../../tests/checkpoint.rs"]
-mod tests;

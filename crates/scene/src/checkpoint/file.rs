@@ -12,9 +12,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+use serde::Serialize;
+
 use super::Checkpoint;
-use base::{Error, Location, Result};
-use report::output;
+use base::{output, Error, Location, Result};
 
 const MAGIC: &[u8] = b"fetifeti checkpoint\n";
 /// Version of the format; it changes with the meaning of fields, not with new ones.
@@ -27,7 +29,7 @@ const TAIL: usize = 8;
 ///
 /// # Errors
 /// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path; the old file is then untouched.
-pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
+pub fn write<R: Serialize>(path: &Path, checkpoint: &Checkpoint<R>) -> Result<()> {
     output::write_durably(path, &to_bytes(checkpoint))
 }
 
@@ -36,7 +38,7 @@ pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
 /// # Errors
 /// [`ErrorKind::Input`](base::ErrorKind::Input) with the path, what was found and what was expected, for anything but a
 /// whole checkpoint of this version.
-pub fn read(path: &Path) -> Result<Checkpoint> {
+pub fn read<R: Default + DeserializeOwned>(path: &Path) -> Result<Checkpoint<R>> {
     let name = path.display();
     let refused = |e| {
         Error::input("the checkpoint cannot be read")
@@ -90,12 +92,12 @@ pub(super) fn hash_of(path: &Path) -> Result<u64> {
     }
 }
 
-fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {
+fn to_bytes<R: Serialize>(checkpoint: &Checkpoint<R>) -> Vec<u8> {
     around(&serde_json::to_vec(checkpoint).expect("numbers, texts and lists have a form"))
 }
 
 /// The file with this content.
-pub(crate) fn around(content: &[u8]) -> Vec<u8> {
+pub fn around(content: &[u8]) -> Vec<u8> {
     let mut file = Vec::with_capacity(HEAD + content.len() + TAIL);
     file.extend(MAGIC);
     file.extend(VERSION.to_le_bytes());
@@ -105,11 +107,16 @@ pub(crate) fn around(content: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The content of a file with these bytes; or what is wrong with it, a clause.
-pub(crate) fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String> {
+/// The content of a file with these bytes.
+///
+/// # Errors
+/// A clause that says what is wrong with them.
+pub fn from_bytes<R: Default + DeserializeOwned>(
+    file: &[u8],
+) -> std::result::Result<Checkpoint<R>, String> {
     let found = file.len();
     if !file.starts_with(&MAGIC[..found.min(MAGIC.len())]) {
-        return Err("the file is no checkpoint, expected one that --checkpoint has written".into());
+        return Err("the file is no checkpoint, expected one that fetifeti has written".into());
     }
     if found < HEAD {
         return Err(format!(
@@ -142,11 +149,11 @@ pub(crate) fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String>
             "the checkpoint is damaged: checksum {here:016x}, expected {written:016x}"
         ));
     }
-    match serde_json::from_slice::<Checkpoint>(&whole[HEAD..]) {
+    match serde_json::from_slice::<Checkpoint<R>>(&whole[HEAD..]) {
         Ok(checkpoint) if checkpoint.stepper.contact.is_consistent() => Ok(checkpoint),
-        _ => Err(
-            "the checkpoint contradicts itself, expected one that --checkpoint has written".into(),
-        ),
+        _ => {
+            Err("the checkpoint contradicts itself, expected one that fetifeti has written".into())
+        }
     }
 }
 

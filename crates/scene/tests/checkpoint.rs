@@ -1,4 +1,4 @@
-//! Unit tests of `crates/cli/src/checkpoint/mod.rs`.
+//! Unit tests of `crates/scene/src/checkpoint/mod.rs`.
 
 use super::fingerprint;
 

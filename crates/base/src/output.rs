@@ -1,6 +1,6 @@
 //! Output of results: files written atomically, or standard output for the path `-`.
 
-use base::{Error, Result};
+use crate::error::{Error, Result};
 use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// directly.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment), one sentence with the path, when writing fails; the old
+/// [`ErrorKind::Environment`](crate::ErrorKind::Environment), one sentence with the path, when writing fails; the old
 /// file is then untouched.
 pub fn write_file(
     path: &Path,
@@ -89,7 +89,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
 /// Prints text on standard output. Unlike `print!` it does not panic where the output is a full disk or a closed pipe.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment).
+/// [`ErrorKind::Environment`](crate::ErrorKind::Environment).
 pub fn print(text: &str) -> Result<()> {
     write_text(Path::new("-"), text)
 }
@@ -98,7 +98,7 @@ pub fn print(text: &str) -> Result<()> {
 /// It is called before a long computation, so that the results do not get lost at the end.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
+/// [`ErrorKind::Environment`](crate::ErrorKind::Environment) with the path.
 pub fn prepare_directory(path: &Path) -> Result<()> {
     let refused = |e: std::io::Error| {
         Error::environment(format!("cannot write into the directory {}", shown(path))).because(e)
@@ -118,7 +118,7 @@ pub fn prepare_directory(path: &Path) -> Result<()> {
 /// As [`prepare_directory`], for the directory of a result file; for the path `-` it does nothing.
 ///
 /// # Errors
-/// [`ErrorKind::Environment`](base::ErrorKind::Environment) with the path.
+/// [`ErrorKind::Environment`](crate::ErrorKind::Environment) with the path.
 pub fn prepare_file(path: &Path) -> Result<()> {
     if is_stdout(path) {
         return Ok(());
@@ -162,4 +162,4 @@ fn temporary_name(target: &Path) -> PathBuf {
 
 #[cfg(test)]
 #[path = "../tests/output.rs"]
-pub(crate) mod tests;
+mod tests;

@@ -1,24 +1,7 @@
-//! Unit tests of `crates/report/src/output.rs`.
+//! Unit tests of `crates/base/src/output.rs`.
 
 use super::*;
-
-/// A fresh directory that is removed again when the test ends.
-pub(crate) struct Scratch(pub PathBuf);
-
-impl Scratch {
-    pub(crate) fn new(name: &str) -> Self {
-        let dir = std::env::temp_dir().join(format!("fetifeti-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&dir);
-        fs::create_dir_all(&dir).unwrap();
-        Scratch(dir)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
+use crate::scratch::Scratch;
 
 #[test]
 fn writes_replaces_and_leaves_nothing_behind() {
