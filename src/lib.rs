@@ -119,6 +119,7 @@ mod testing;
 
 #[doc(inline)]
 pub use base::{Error, Result};
+pub use contact::driver;
 #[doc(inline)]
 pub use parallel::exchange::{max_all, sum_all};
 #[doc(inline)]

@@ -1,138 +1,82 @@
 //! The contact loop on one page: propose, solve, judge, step, certify, doubt.
 //!
-//! A [`Strategy`](super::strategy::Strategy) proposes steps. The driver lets it make them, counts, observes, times and
-//! stops. The certificate has the last word: rows that it finds on the wrong side send the loop on.
+//! A [`Strategy`] proposes steps. The driver lets it make them, counts, observes, times and stops. The certificate has
+//! the last word: rows that it finds on the wrong side send the loop on. What the equations are, and who solves them,
+//! is the matter of an [`InnerProblem`].
 
 use std::time::Instant;
 
-use super::certified_signs::{signs, Signs};
-use super::existence::Existence;
-use super::settings::{ContactSettings, ContactType};
-use super::state::{Observer, State, Step};
-use super::strategies;
-use super::strategy::{Checkpoint, Proposal};
-use crate::feti::krylov::loads::Loads;
-use crate::feti::{LinearMethod, LinearSolution};
-use crate::status::Status;
+pub use super::inner::{Begin, Begun, InnerProblem, Verdict};
+pub use super::strategy::{Checkpoint, Course, Proposal, Strategy};
 use crate::Result;
 
-/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
-/// the method hold that held before. Collective.
+type State<P> = <<P as InnerProblem>::Course as Course>::State;
+type Step<P> = <<P as InnerProblem>::Course as Course>::Step;
+type Solution<P> = <<P as InnerProblem>::Course as Course>::Solution;
+
+/// Solves a problem with its inequalities, from a state or from scratch. Returns the solution and the steps of the
+/// loop; `observe` sees each of them. Collective.
 ///
 /// # Errors
-/// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
-pub(crate) fn solve(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    start: Option<&State>,
-    observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
-    method.with_rows_kept(|| {
-        Existence::new(method, &method.dual(), settings).of_gaps()?;
-        certified(method, settings, start, observe)
-    })
-}
-
-/// Follows strategies until the certificate finds all rows on the right side. Collective.
-fn certified(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    start: Option<&State>,
-    observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
-    let before = start.map_or(0, |s| s.steps);
-    let begin = start.cloned();
-    let (mut found, mut steps) = follow(method, settings, settings.kind, begin, observe)?;
-    let tuning = &settings.tuning;
-    let mut accuracy = 1.0;
-    for _ in 0..tuning.certified_rounds {
-        let certified = method.certify(method.refine(found)?)?;
-        // A certificate that rows on the wrong side have spoilt is for the loop to mend.
-        if !certified.status.converged() && certified.status != Status::Certificate {
-            return Ok((certified, steps));
-        }
-        let mut state = match signs(method, tuning, &certified)? {
-            Signs::Right => return Ok((certified, steps)),
-            Signs::Shared(lambda) => {
-                return Ok((method.with_multipliers(certified, lambda)?, steps));
+/// Bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
+pub fn solve<P: InnerProblem>(
+    problem: &P,
+    start: Option<State<P>>,
+    observe: &mut dyn FnMut(&Step<P>, &State<P>) -> Result<()>,
+) -> Result<(Solution<P>, Vec<Step<P>>)> {
+    let (mut found, mut steps) = follow(problem, Begin::First(start), observe)?;
+    for round in 0.. {
+        match problem.certify(found, steps.len(), round)? {
+            Verdict::Done(certified) => return Ok((certified, steps)),
+            Verdict::Wrong(state, certified) => {
+                let (next, more) = follow(problem, Begin::Again(state), observe)?;
+                steps.extend(more);
+                found = problem.joined(&certified, next);
             }
-            Signs::Wrong(state) => state,
-        };
-        accuracy *= tuning.certified_reduction;
-        state.accuracy = accuracy;
-        state.steps = before + steps.len();
-        let kind = ContactType::ActiveSet;
-        let (next, more) = follow(method, settings, kind, Some(state), observe)?;
-        let (iterations, seconds) = (certified.iterations, certified.solve_seconds);
-        steps.extend(more);
-        found = LinearSolution {
-            iterations: iterations + next.iterations,
-            solve_seconds: seconds + next.solve_seconds,
-            ..next
-        };
-    }
-    let mut last = method.certify(method.refine(found)?)?;
-    if last.status.converged() {
-        match signs(method, tuning, &last)? {
-            Signs::Right => {}
-            Signs::Shared(lambda) => last = method.with_multipliers(last, lambda)?,
-            Signs::Wrong(_) => last.status = Status::Certificate,
         }
     }
-    Ok((last, steps))
+    unreachable!("a problem ends the rounds of its certificate")
 }
 
 /// Follows a strategy, and those to which it hands over, to the end. The result has no certificate. Collective.
-fn follow(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    kind: ContactType,
-    start: Option<State>,
-    observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
+fn follow<P: InnerProblem>(
+    problem: &P,
+    begin: Begin<State<P>>,
+    observe: &mut dyn FnMut(&Step<P>, &State<P>) -> Result<()>,
+) -> Result<(Solution<P>, Vec<Step<P>>)> {
     let clock = Instant::now();
-    let mut steps: Vec<Step> = Vec::new();
-    let mut strategy = strategies::begin(kind, method, settings, start)?;
+    let mut steps: Vec<Step<P>> = Vec::new();
+    let mut strategy = problem.begin(begin)?;
     let mut asked = strategy.asks_first();
     if asked {
-        doubt(method, settings, &strategy.state().lambda)?;
+        problem.doubt(strategy.state())?;
     }
     // The number of steps when the strategy began.
     let mut before = 0;
-    let status = loop {
-        if strategy.state().steps >= settings.max_it {
-            break Status::ContactSteps;
+    let end = loop {
+        if let Some(end) = problem.stop(strategy.state()) {
+            break end;
         }
         if strategy.checkpoint() == Checkpoint::HandOver {
             let state = strategy.state().clone();
             drop(strategy);
-            let kind = ContactType::AugmentedLagrangian;
-            strategy = strategies::begin(kind, method, settings, Some(state))?;
+            strategy = problem.begin(Begin::HandOver(state))?;
             (before, asked) = (steps.len(), false);
         }
         let (step, proposal) = strategy.step()?;
         observe(&step, strategy.state())?;
         steps.push(step);
-        if !asked && steps.len() - before == settings.tuning.doubt_after {
+        if !asked && problem.is_doubtful(steps.len() - before) {
             asked = true;
-            doubt(method, settings, &strategy.state().lambda)?;
+            problem.doubt(strategy.state())?;
         }
-        if let Proposal::End(status) = proposal {
-            break status;
+        if let Proposal::End(end) = proposal {
+            break end;
         }
     };
-    let found = strategy.finish(&steps, clock.elapsed().as_secs_f64(), status)?;
-    if !found.status.converged() && !asked {
-        doubt(method, settings, &found.lambda)?;
+    let found = strategy.finish(&steps, clock.elapsed().as_secs_f64(), end)?;
+    if !asked {
+        problem.doubt_end(&found)?;
     }
     Ok((found, steps))
-}
-
-/// Asks whether there is a solution: returns an error that names bodies which the load pushes away for ever. Few rigid
-/// motions are asked about before the loop, many only here, from the λ where the loop is: where it has failed or does
-/// not end, and before a strategy that would go on for ever. Collective.
-fn doubt(method: &LinearMethod, settings: &ContactSettings, lambda: &[f64]) -> Result<()> {
-    let dual = method.dual();
-    let load = Loads::new(&method.problem, &dual).kernel;
-    Existence::new(method, &dual, settings).if_many(&load, lambda)
 }

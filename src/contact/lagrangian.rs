@@ -15,6 +15,7 @@
 //! converged.
 
 use super::active_set::{ActiveSet, ActiveSetChange};
+use super::dual_problem::DualCourse;
 use super::semismooth_newton::{NewtonOutcome, SemismoothNewton};
 use super::settings::ContactSettings;
 use super::state::{ActiveSetProgress, State, Step};
@@ -124,7 +125,7 @@ impl<'a> AugmentedLagrangian<'a> {
     }
 
     /// A Newton step, and what follows it. Collective.
-    fn newton(&mut self) -> Result<(Step, Proposal)> {
+    fn newton(&mut self) -> Result<(Step, Proposal<Status>)> {
         let (step, status, came) = self.search.step(&mut self.state)?;
         let wrong = step.wrong;
         self.progress.note(wrong);
@@ -195,7 +196,7 @@ impl<'a> AugmentedLagrangian<'a> {
     }
 
     /// A step of a trial, and what follows it. Collective.
-    fn try_set(&mut self, mut trial: Box<Trial<'a>>) -> Result<(Step, Proposal)> {
+    fn try_set(&mut self, mut trial: Box<Trial<'a>>) -> Result<(Step, Proposal<Status>)> {
         let run = &mut trial.run;
         let (step, status, change) = run.try_set()?;
         self.state.steps += 1;
@@ -267,12 +268,12 @@ impl<'a> AugmentedLagrangian<'a> {
     }
 }
 
-impl Strategy for AugmentedLagrangian<'_> {
+impl Strategy<DualCourse> for AugmentedLagrangian<'_> {
     fn state(&self) -> &State {
         self.trial_state.as_ref().unwrap_or(&self.state)
     }
 
-    fn step(&mut self) -> Result<(Step, Proposal)> {
+    fn step(&mut self) -> Result<(Step, Proposal<Status>)> {
         loop {
             match std::mem::replace(&mut self.next, NextStep::Newton) {
                 NextStep::Trial(trial) => return self.try_set(trial),

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The loop (`driver`) calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are
-//! factored once. There are three strategies (`strategies`): a primal-dual active set (`active_set`); damped Newton
+//! factored once. There are three strategies (`dual_problem`): a primal-dual active set (`active_set`); damped Newton
 //! steps on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE
 //! with MPRGP (`smalbe`). Sets that they propose are repaired (`repairs`): rows are put back that hold bodies, bodies are placed,
 //! dependent rows agree. Whether there is a solution at all is asked in one place (`existence`).
@@ -15,9 +15,11 @@ mod anchored;
 mod anchors;
 mod augmented;
 mod certified_signs;
-mod driver;
+pub mod driver;
+mod dual_problem;
 mod existence;
 mod force_balance;
+mod inner;
 mod judge;
 mod lagrangian;
 mod line_search;
@@ -32,7 +34,6 @@ mod semismooth_newton;
 mod settings;
 mod smalbe;
 mod state;
-mod strategies;
 mod strategy;
 mod tuning;
 
@@ -41,4 +42,4 @@ pub use tuning::Tuning;
 
 pub use state::{ActiveSetProgress, Observer, State, Step};
 
-pub(crate) use driver::solve;
+pub(crate) use dual_problem::solve;

@@ -17,6 +17,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::active_set::ActiveSet;
 use super::augmented::Augmented;
+use super::dual_problem::DualCourse;
 use super::mprgp::{BoundedQuadratic, Setting};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, ActiveSetProgress, State, Step};
@@ -129,7 +130,7 @@ impl<'a> Smalbe<'a> {
     }
 }
 
-impl Strategy for Smalbe<'_> {
+impl Strategy<DualCourse> for Smalbe<'_> {
     fn state(&self) -> &State {
         self.trial
             .as_ref()
@@ -148,7 +149,7 @@ impl Strategy for Smalbe<'_> {
         }
     }
 
-    fn step(&mut self) -> Result<(Step, Proposal)> {
+    fn step(&mut self) -> Result<(Step, Proposal<Status>)> {
         let closing = self.settings.tuning.closing_steps;
         if let Some((run, _)) = self.trial.take_if(|(_, steps)| *steps == closing) {
             self.go_on(&run)?;

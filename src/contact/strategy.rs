@@ -1,32 +1,41 @@
 //! A strategy of the contact loop: it proposes steps, and the driver acts on its answers.
 
-use super::state::{State, Step};
-use crate::feti::LinearSolution;
-use crate::status::Status;
 use crate::Result;
+
+/// The types of a course of the loop.
+pub trait Course {
+    /// Where a strategy is, sufficient for it or another one to continue from there.
+    type State: Clone;
+    /// The record of a step.
+    type Step;
+    /// Why a strategy has ended.
+    type End;
+    /// The end of the loop.
+    type Solution;
+}
 
 /// The answer of a strategy after a step: the next one, or none.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Proposal {
+pub enum Proposal<End> {
     /// Another step.
     GoOn,
-    /// Nothing: the strategy has found a solution, or its equations were not solved. The status says which.
-    End(Status),
+    /// Nothing: the strategy has found a solution, or its equations were not solved.
+    End(End),
 }
 
 /// Whether a strategy goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Checkpoint {
+pub enum Checkpoint {
     /// It does.
     Update,
-    /// It has come to where it gets no further: the augmented Lagrangian takes over from its state.
+    /// It has come to where it gets no further: another strategy takes over from its state.
     HandOver,
 }
 
 /// A strategy of the contact loop. The methods are collective.
-pub(super) trait Strategy {
-    /// Where the loop is after the last step, sufficient to continue from there.
-    fn state(&self) -> &State;
+pub trait Strategy<C: Course> {
+    /// Where the loop is after the last step.
+    fn state(&self) -> &C::State;
 
     /// Whether the question if there is a solution must be answered before the first step, because the strategy would
     /// go on for ever without one.
@@ -43,16 +52,12 @@ pub(super) trait Strategy {
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever; PETSc's own errors.
-    fn step(&mut self) -> Result<(Step, Proposal)>;
+    fn step(&mut self) -> Result<(C::Step, Proposal<C::End>)>;
 
     /// The solution where the loop is, after these steps and seconds.
     ///
     /// # Errors
     /// PETSc's own.
-    fn finish(
-        self: Box<Self>,
-        steps: &[Step],
-        seconds: f64,
-        status: Status,
-    ) -> Result<LinearSolution>;
+    fn finish(self: Box<Self>, steps: &[C::Step], seconds: f64, end: C::End)
+        -> Result<C::Solution>;
 }

@@ -15,6 +15,7 @@ mod next_set;
 
 use std::time::Instant;
 
+use super::dual_problem::DualCourse;
 use super::existence::Existence;
 use super::judge::JudgeSizes;
 use super::pull_monitor::PullMonitor;
@@ -292,7 +293,7 @@ impl<'a> ActiveSet<'a> {
     }
 }
 
-impl Strategy for ActiveSet<'_> {
+impl Strategy<DualCourse> for ActiveSet<'_> {
     fn state(&self) -> &State {
         &self.state
     }
@@ -305,7 +306,7 @@ impl Strategy for ActiveSet<'_> {
         }
     }
 
-    fn step(&mut self) -> Result<(Step, Proposal)> {
+    fn step(&mut self) -> Result<(Step, Proposal<Status>)> {
         let is_last = self.tight;
         let (step, status, change) = self.try_set()?;
         // The equations of a set on the way may contradict each other, and then have no solution. Springs have one.

@@ -9,6 +9,7 @@
 mod cycles;
 mod damped_newton;
 mod eliminated;
+mod equations;
 pub mod frame;
 pub mod groups;
 mod judged;
@@ -22,6 +23,8 @@ pub mod reduced;
 pub mod reference;
 pub mod refine;
 pub mod rows;
+mod sets;
 pub mod strain;
 pub mod system;
+mod trials;
 pub mod unknowns;

@@ -1,42 +1,26 @@
-//! The primal-dual active set on the assembled problem: the loop of `contact::active_set` with the same rules, around
-//! solvers of PETSc.
+//! Inequalities on the assembled problem: the driver of the contact loop around solvers of PETSc.
 //!
 //! ```text
 //!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,  Bᵀ λ = f − K u,  A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
 //! ```
 //!
-//! The loop starts from all candidates. While the set changes, problems are solved loosely, and u is the start of the
-//! next solve; once the set stays, its problem is solved to the final tolerance. If a set comes back, the loop becomes
-//! careful: exact solves first, then one row at a time.
-//!
-//! These sets need not settle. If a set comes back again, if there are too many, or if the last row that holds a body
-//! pulls, the sets come from a method that converges (see [`DampedNewton`]). Each of its sets is
-//! tried: its equations are solved, and the sets that follow by the rule above, for as long as there are fewer and
-//! fewer wrong rows. The loop ends with the first set that satisfies all conditions. So the method guarantees the end,
-//! and the trials give the accuracy.
+//! There are two strategies: sets that follow from each other ([`sets`](super::sets)), and those of a method that
+//! converges, to which it hands over ([`trials`](super::trials)).
 
-use std::collections::HashSet;
-use std::time::Instant;
+use std::cell::RefCell;
 
-use super::damped_newton::DampedNewton;
-use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
-use super::judged::Judged;
+use super::equations::Equations;
 use super::reduced::Reduced;
-use super::refine::{over, Refiner};
+use super::refine::Refiner;
 use super::rows::Inequalities;
+use super::sets::WanderingSets;
+use super::trials::Trials;
 use base::Result;
-use parallel::meter::timed;
+use fetifeti::driver::{self, Begin, Begun, Course, InnerProblem, Verdict};
 use petsc::{Ksp, Session, Vec as PetscVec};
-
-/// Some rows are kept active only so that no body comes loose. Such a row may pull by this part of the largest
-/// multiplier: then no force drives the body away.
-const IDLE: f64 = 1e-8;
 
 /// The certificate of a refined solution must be below this.
 const CERTIFIED: f64 = 1e-9;
-
-/// Number of steps after which the sets come from the method that converges.
-const STEPS: usize = 200;
 
 /// Tolerances.
 #[derive(Debug, Clone, Copy)]
@@ -113,17 +97,107 @@ impl OuterCertificate {
     }
 }
 
-/// How carefully the loop changes the set.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Caution {
-    Loose,
-    Exact,
-    Single,
-}
-
 /// The source of the loop's solvers. It is called whenever a preconditioner is built, and returns the previous solver
 /// or a new one, with options, but without operator and set-up.
 pub type Solvers<'a> = dyn FnMut() -> Result<Ksp> + 'a;
+
+/// The types of a loop around the assembled problem.
+pub struct AssembledCourse;
+
+impl Course for AssembledCourse {
+    type State = SetState;
+    type Step = OuterStep;
+    type End = OuterEnd;
+    type Solution = ActiveSetEnd;
+}
+
+/// The next set.
+#[derive(Debug, Clone)]
+pub struct SetState {
+    /// Whether each row is to hold.
+    pub active: Vec<bool>,
+    /// The order in which rows are made to hold.
+    pub priority: Vec<usize>,
+    /// Why a method that converges is needed.
+    pub trouble: Option<&'static str>,
+}
+
+/// Numbers of one step.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OuterStep {
+    /// Systems of equations.
+    pub systems: usize,
+    /// Iterations of their solvers.
+    pub iterations: usize,
+}
+
+/// Whether a solution was found, and why the loop has ended.
+pub type OuterEnd = (bool, String);
+
+/// The assembled problem.
+struct AssembledRows<'a> {
+    session: &'a Session,
+    rows: &'a Inequalities,
+    reduced: &'a Reduced,
+    /// The solver of one set. Only the strategy that runs has it.
+    equations: RefCell<Equations<'a>>,
+    given: Option<&'a [bool]>,
+}
+
+impl InnerProblem for AssembledRows<'_> {
+    type Course = AssembledCourse;
+
+    fn begin<'a>(&'a self, begin: Begin<SetState>) -> Result<Begun<'a, AssembledCourse>> {
+        let mut equations = self.equations.borrow_mut();
+        Ok(match begin {
+            Begin::HandOver(state) => {
+                let search = (self.session, self.rows, self.reduced);
+                drop(equations);
+                Box::new(Trials::new(search, &self.equations, state)?)
+            }
+            Begin::First(_) | Begin::Again(_) => {
+                equations.start()?;
+                drop(equations);
+                let state = SetState {
+                    active: self
+                        .given
+                        .map_or_else(|| self.rows.initial.clone(), <[bool]>::to_vec),
+                    priority: (0..self.rows.len()).collect(),
+                    trouble: None,
+                };
+                let is_given = self.given.is_some();
+                Box::new(WanderingSets::new(&self.equations, state, is_given))
+            }
+        })
+    }
+
+    /// The strategies end by themselves.
+    fn stop(&self, _: &SetState) -> Option<OuterEnd> {
+        None
+    }
+
+    fn is_doubtful(&self, _: usize) -> bool {
+        false
+    }
+
+    /// A loop that finds nothing says so; why is for others to find out.
+    fn doubt(&self, _: &SetState) -> Result<()> {
+        Ok(())
+    }
+
+    fn doubt_end(&self, _: &ActiveSetEnd) -> Result<()> {
+        Ok(())
+    }
+
+    /// Every set has its certificate.
+    fn certify(&self, found: ActiveSetEnd, _: usize, _: usize) -> Result<Verdict<AssembledCourse>> {
+        Ok(Verdict::Done(found))
+    }
+
+    fn joined(&self, _: &ActiveSetEnd, next: ActiveSetEnd) -> ActiveSetEnd {
+        next
+    }
+}
 
 /// Runs the loop. Where a set is given, only its equations are solved. Collective.
 ///
@@ -138,192 +212,13 @@ pub fn solve(
     solve: OuterSolve,
     given: Option<&[bool]>,
 ) -> Result<ActiveSetEnd> {
-    let (whole, mut setup) = (Instant::now(), 0.0);
-    let u = reduced.vector()?;
-    let mut active = given.map_or_else(|| rows.initial.clone(), <[bool]>::to_vec);
-    let mut priority: Vec<usize> = (0..rows.len()).collect();
-    let mut visited: HashSet<Vec<bool>> = HashSet::new();
-    let mut caution = Caution::Loose;
-    let (mut steps, mut iterations, mut tight) = (0, 0, given.is_some());
-    // The active set for which the preconditioner was built.
-    let mut built: Vec<bool> = Vec::new();
-    let mut groups: Option<ActiveGroups> = None;
-    let mut search: Option<DampedNewton> = None;
-    // Why `search` was begun, and the least number of wrong rows in the present trial.
-    let (mut why_search, mut fewest) = ("DIVERGED_CONTACT_ITS", 0);
-    let mut ksp = solvers()?;
-    loop {
-        let now = match groups.take() {
-            Some(groups) => groups,
-            None => {
-                let groups = ActiveGroups::new(rows, &mut active, &priority);
-                let changed = active.iter().zip(&built).filter(|(a, b)| a != b).count();
-                let stale = changed as f64 > tolerances.lag * rows.len() as f64;
-                let build = built.is_empty() || stale;
-                if build {
-                    built.clone_from(&active);
-                }
-                let prepare = || {
-                    if build && steps > 0 {
-                        ksp = solvers()?;
-                    }
-                    ksp.set_reuse_preconditioner(!build)?;
-                    reduced.update(&groups)?;
-                    ksp.set_operators(&reduced.a, &reduced.a)?;
-                    ksp.setup()
-                };
-                setup += timed(session, prepare)?.1;
-                groups
-            }
-        };
-        steps += 1;
-        let b = reduced.rhs(&now)?;
-        let v = reduced.start(&now, &u)?;
-        let reference = reduced.reference(&b)?;
-        let target = tolerances.rtol * reference;
-        let (r, d) = (reduced.vector()?, reduced.vector()?);
-        let mut residual = residual_of(reduced, &b, &v, &r)?;
-        let stop = match caution {
-            Caution::Loose if !tight => target.max(tolerances.inner * residual),
-            _ => target,
-        };
-        let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
-        let (mut failed, mut correction) = (false, 0.0);
-        if let OuterSolve::Refined(refiner) = solve {
-            let refined = refiner.refine(&now, &ksp, &v)?;
-            (residual, correction) = (refined.residual, refined.correction);
-            (reason, failed) = refined.reason;
-            iterations += refined.rounds;
-        }
-        let solves = match solve {
-            OuterSolve::Once => usize::from(residual > stop),
-            OuterSolve::Repeated(solves) => solves,
-            OuterSolve::Refined(_) => 0,
-        };
-        for _ in 0..solves {
-            ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;
-            ksp.solve(&r, &d)?;
-            v.axpy(1.0, &d)?;
-            iterations += ksp.iterations()?;
-            let why = ksp.converged_reason()?;
-            failed = !why.converged();
-            reason = why.name;
-            residual = residual_of(reduced, &b, &v, &r)?;
-        }
-        reduced.trace.spread(session.comm(), &now, &v, &u)?;
-
-        let at = reduced.trace.get(session.comm(), &u)?;
-        let forces = match solve {
-            OuterSolve::Refined(refiner) => refiner.forces(&u)?,
-            _ => reduced.forces(&u)?,
-        };
-        let signs = match search {
-            Some(_) => MultiplierSigns::Pushing,
-            None => MultiplierSigns::Any,
-        };
-        let lambda = multipliers(rows, &active, &forces, signs);
-        let sizes = (u.norm_inf()?, reference);
-        let judged = Judged::new(rows, &active, lambda, rows.gaps(&at), sizes);
-        let certificate = judged.certificate(correction);
-        let relative = over(residual, reference);
-        let mut next = judged.next.clone();
-        if caution == Caution::Single {
-            judged.keep_worst(&active, &mut next);
-        }
-        let restored = rows.restore(&mut next, &judged.score);
-        let stays = next == active;
-        let to_the_end = stop <= target;
-        let refined = matches!(solve, OuterSolve::Refined(_));
-        // Sets that come back differ only in rows that rounding decides.
-        let right = if refined {
-            caution != Caution::Loose && certificate.holds()
-        } else {
-            search.is_some() && certificate.holds()
-        };
-        let settled = stays || right;
-        let met = if refined {
-            certificate.holds()
-        } else {
-            relative <= tolerances.rtol
-        };
-        let idle = |r: &usize| judged.idle(*r, IDLE);
-        let held = restored.iter().all(idle);
-        let wrong = judged.count();
-        let worse = !held || wrong >= fewest;
-        let end = if failed {
-            Some((false, reason))
-        } else if given.is_some() {
-            Some((!refined || met, reason))
-        } else if settled && to_the_end && held {
-            Some((met, reason))
-        } else if worse && search.as_ref().is_some_and(DampedNewton::is_exhausted) {
-            Some((false, why_search.to_string()))
-        } else {
-            None
-        };
-        if let Some((converged, reason)) = end {
-            return Ok(ActiveSetEnd {
-                u,
-                active,
-                lambda: judged.lambda,
-                gaps: judged.gaps,
-                steps,
-                iterations,
-                setup,
-                solve: whole.elapsed().as_secs_f64() - setup,
-                residual: relative,
-                certificate,
-                converged,
-                reason,
-            });
-        }
-        let loose = settled && to_the_end && !held;
-        tight = stays && !loose;
-        if tight {
-            groups = Some(now);
-            continue;
-        }
-        let back = !visited.insert(next.clone());
-        if search.is_none() {
-            if loose || steps >= STEPS || (back && caution == Caution::Single) {
-                search = Some(DampedNewton::new(session, rows, reduced)?);
-                why_search = if loose {
-                    "DIVERGED_CONTACT_LOOSE"
-                } else {
-                    "DIVERGED_CONTACT_ITS"
-                };
-                caution = Caution::Exact;
-            } else if back {
-                caution = match caution {
-                    Caution::Loose => Caution::Exact,
-                    _ => Caution::Single,
-                };
-                visited.clear();
-            }
-        }
-        match &mut search {
-            Some(search) if worse => {
-                let round = search.round(solvers)?;
-                steps += round.steps;
-                iterations += round.iterations;
-                setup += round.setup;
-                u.copy_from(&search.u)?;
-                (active, priority) = (round.active, round.priority);
-                built.clear();
-                fewest = usize::MAX;
-            }
-            _ => {
-                priority = judged.priority(&active, &next);
-                active = next;
-                fewest = wrong;
-            }
-        }
-    }
-}
-
-/// r ← b − A v, and its norm.
-fn residual_of(reduced: &Reduced, b: &PetscVec, v: &PetscVec, r: &PetscVec) -> Result<f64> {
-    reduced.a.mult(v, r)?;
-    r.aypx(-1.0, b)?;
-    r.norm2()
+    let equations = Equations::new(session, (rows, reduced), solvers, tolerances, solve)?;
+    let problem = AssembledRows {
+        session,
+        rows,
+        reduced,
+        equations: RefCell::new(equations),
+        given,
+    };
+    Ok(driver::solve(&problem, None, &mut |_, _| Ok(()))?.0)
 }

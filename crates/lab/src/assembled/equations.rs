@@ -1,0 +1,281 @@
+//! The equations of one active set of the assembled problem, and the verdict on their solution.
+
+use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
+use super::judged::Judged;
+use super::outer::{
+    ActiveSetEnd, OuterCertificate, OuterEnd, OuterSolve, OuterStep, SetState, Solvers, Tolerances,
+};
+use super::reduced::Reduced;
+use super::refine::over;
+use super::rows::Inequalities;
+use base::Result;
+use parallel::meter::timed;
+use petsc::{Ksp, Session, Vec as PetscVec};
+
+/// Some rows are kept active only so that no body comes loose. Such a row may pull by this part of the largest
+/// multiplier: then no force drives the body away.
+const IDLE: f64 = 1e-8;
+
+/// How a set is solved.
+#[derive(Clone, Copy)]
+pub(super) struct Manner {
+    /// Whether the residual is reduced to the tolerance, or only as far as a set needs that still changes.
+    pub exact: bool,
+    /// Whether only the worst row changes.
+    pub single: bool,
+    /// The signs that multipliers of dependent rows are to have.
+    pub signs: MultiplierSigns,
+}
+
+/// The solution of a set, and what follows from it.
+pub(super) struct Solved {
+    /// The set.
+    pub active: Vec<bool>,
+    /// The set that follows.
+    pub next: Vec<bool>,
+    pub judged: Judged,
+    pub certificate: OuterCertificate,
+    /// The residual, relative to the load.
+    pub residual: f64,
+    /// Whether it is within the tolerance of the user, and was meant to be.
+    pub met: bool,
+    pub to_the_end: bool,
+    /// Whether the rows that were put back hold bodies without force.
+    pub held: bool,
+    /// Why the solver has ended, and whether it failed.
+    pub reason: (String, bool),
+    pub step: OuterStep,
+    groups: ActiveGroups,
+}
+
+impl Solved {
+    /// Whether the set follows from itself.
+    pub fn stays(&self) -> bool {
+        self.next == self.active
+    }
+
+    /// The set that follows, and the order in which its rows are made to hold.
+    pub fn following(self) -> SetState {
+        SetState {
+            priority: self.judged.priority(&self.active, &self.next),
+            active: self.next,
+            trouble: None,
+        }
+    }
+}
+
+/// The solver of one set after the other.
+pub(super) struct Equations<'a> {
+    session: &'a Session,
+    rows: &'a Inequalities,
+    pub reduced: &'a Reduced,
+    pub solvers: &'a mut Solvers<'a>,
+    tolerances: Tolerances,
+    solve: OuterSolve<'a>,
+    /// The present u, the start of the next solve.
+    pub u: PetscVec,
+    ksp: Option<Ksp>,
+    /// The active set for which the preconditioner was built.
+    built: Vec<bool>,
+    /// The groups of the last set, where it is solved again.
+    groups: Option<ActiveGroups>,
+    /// Seconds for matrices and preconditioners.
+    pub setup: f64,
+    /// Whether a preconditioner was built.
+    begun: bool,
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of these rows. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(
+        session: &'a Session,
+        (rows, reduced): (&'a Inequalities, &'a Reduced),
+        solvers: &'a mut Solvers<'a>,
+        tolerances: Tolerances,
+        solve: OuterSolve<'a>,
+    ) -> Result<Equations<'a>> {
+        Ok(Equations {
+            u: reduced.vector()?,
+            session,
+            rows,
+            reduced,
+            solvers,
+            tolerances,
+            solve,
+            ksp: None,
+            built: Vec::new(),
+            groups: None,
+            setup: 0.0,
+            begun: false,
+        })
+    }
+
+    /// Takes the first solver.
+    pub fn start(&mut self) -> Result<()> {
+        self.ksp = Some((self.solvers)()?);
+        Ok(())
+    }
+
+    /// Whether solutions are refined.
+    pub fn is_refined(&self) -> bool {
+        matches!(self.solve, OuterSolve::Refined(_))
+    }
+
+    /// The next set is that of `solved` once more.
+    pub fn again(&mut self, solved: Solved) {
+        self.groups = Some(solved.groups);
+    }
+
+    /// The next solve begins at `u`, with a preconditioner of its own.
+    pub fn restart(&mut self, u: &PetscVec) -> Result<()> {
+        self.built.clear();
+        self.u.copy_from(u)
+    }
+
+    /// The matrix of a set, and its preconditioner if that is to be built. Rows that cannot hold leave the set.
+    fn prepared(&mut self, state: &mut SetState) -> Result<ActiveGroups> {
+        if let Some(groups) = self.groups.take() {
+            return Ok(groups);
+        }
+        let (rows, reduced) = (self.rows, self.reduced);
+        let active = &mut state.active;
+        let groups = ActiveGroups::new(rows, active, &state.priority);
+        let changed = active.iter().zip(&self.built);
+        let changed = changed.filter(|(a, b)| a != b).count();
+        let stale = changed as f64 > self.tolerances.lag * rows.len() as f64;
+        let build = self.built.is_empty() || stale;
+        if build {
+            self.built.clone_from(active);
+        }
+        let prepare = || {
+            if build && self.begun {
+                self.ksp = Some((self.solvers)()?);
+            }
+            let ksp = self.ksp.as_ref().expect("the loop has begun");
+            ksp.set_reuse_preconditioner(!build)?;
+            reduced.update(&groups)?;
+            ksp.set_operators(&reduced.a, &reduced.a)?;
+            ksp.setup()
+        };
+        self.setup += timed(self.session, prepare)?.1;
+        self.begun = true;
+        Ok(groups)
+    }
+
+    /// Solves the equations of a set from the present u, and judges its rows. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn solved(&mut self, state: &mut SetState, manner: Manner) -> Result<Solved> {
+        let groups = self.prepared(state)?;
+        let (rows, reduced, comm) = (self.rows, self.reduced, self.session.comm());
+        let (u, active) = (&self.u, &state.active);
+        let ksp = self.ksp.as_ref().expect("the loop has begun");
+        let b = reduced.rhs(&groups)?;
+        let v = reduced.start(&groups, u)?;
+        let reference = reduced.reference(&b)?;
+        let target = self.tolerances.rtol * reference;
+        let (r, d) = (reduced.vector()?, reduced.vector()?);
+        let mut residual = residual_of(reduced, &b, &v, &r)?;
+        let stop = match manner.exact {
+            false => target.max(self.tolerances.inner * residual),
+            true => target,
+        };
+        let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
+        let (mut failed, mut correction) = (false, 0.0);
+        let mut step = OuterStep {
+            systems: 1,
+            iterations: 0,
+        };
+        if let OuterSolve::Refined(refiner) = self.solve {
+            let refined = refiner.refine(&groups, ksp, &v)?;
+            (residual, correction) = (refined.residual, refined.correction);
+            (reason, failed) = refined.reason;
+            step.iterations += refined.rounds;
+        }
+        let solves = match self.solve {
+            OuterSolve::Once => usize::from(residual > stop),
+            OuterSolve::Repeated(solves) => solves,
+            OuterSolve::Refined(_) => 0,
+        };
+        for _ in 0..solves {
+            ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;
+            ksp.solve(&r, &d)?;
+            v.axpy(1.0, &d)?;
+            step.iterations += ksp.iterations()?;
+            let why = ksp.converged_reason()?;
+            failed = !why.converged();
+            reason = why.name;
+            residual = residual_of(reduced, &b, &v, &r)?;
+        }
+        reduced.trace.spread(comm, &groups, &v, u)?;
+
+        let at = reduced.trace.get(comm, u)?;
+        let forces = match self.solve {
+            OuterSolve::Refined(refiner) => refiner.forces(u)?,
+            _ => reduced.forces(u)?,
+        };
+        let lambda = multipliers(rows, active, &forces, manner.signs);
+        let sizes = (u.norm_inf()?, reference);
+        let judged = Judged::new(rows, active, lambda, rows.gaps(&at), sizes);
+        let certificate = judged.certificate(correction);
+        let relative = over(residual, reference);
+        let mut next = judged.next.clone();
+        if manner.single {
+            judged.keep_worst(active, &mut next);
+        }
+        let restored = rows.restore(&mut next, &judged.score);
+        let met = match self.solve {
+            OuterSolve::Refined(_) => certificate.holds(),
+            _ => relative <= self.tolerances.rtol,
+        };
+        Ok(Solved {
+            active: active.clone(),
+            next,
+            held: restored.iter().all(|r| judged.idle(*r, IDLE)),
+            judged,
+            certificate,
+            residual: relative,
+            met,
+            to_the_end: stop <= target,
+            reason: (reason, failed),
+            step,
+            groups,
+        })
+    }
+
+    /// The end of the loop with this solution, after these steps and seconds.
+    pub fn ended(
+        &self,
+        solved: Solved,
+        (steps, seconds): (&[OuterStep], f64),
+        (converged, reason): OuterEnd,
+    ) -> Result<ActiveSetEnd> {
+        let u = self.reduced.vector()?;
+        u.copy_from(&self.u)?;
+        Ok(ActiveSetEnd {
+            u,
+            active: solved.active,
+            lambda: solved.judged.lambda,
+            gaps: solved.judged.gaps,
+            steps: steps.iter().map(|step| step.systems).sum(),
+            iterations: steps.iter().map(|step| step.iterations).sum(),
+            setup: self.setup,
+            solve: seconds - self.setup,
+            residual: solved.residual,
+            certificate: solved.certificate,
+            converged,
+            reason,
+        })
+    }
+}
+
+/// r ← b − A v, and its norm.
+fn residual_of(reduced: &Reduced, b: &PetscVec, v: &PetscVec, r: &PetscVec) -> Result<f64> {
+    reduced.a.mult(v, r)?;
+    r.aypx(-1.0, b)?;
+    r.norm2()
+}

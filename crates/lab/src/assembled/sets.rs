@@ -1,0 +1,149 @@
+//! Sets of the assembled problem that follow from each other: the primal-dual active set.
+//!
+//! It starts from all candidates. While the set changes, problems are solved loosely, and u is the start of the next
+//! solve; once the set stays, its problem is solved to the final tolerance. If a set comes back, the strategy becomes
+//! careful: exact solves first, then one row at a time. These sets need not settle. If a set comes back again, if there
+//! are too many, or if the last row that holds a body pulls, it hands over.
+
+use std::cell::RefCell;
+use std::collections::HashSet;
+
+use super::equations::{Equations, Manner, Solved};
+use super::groups::MultiplierSigns;
+use super::outer::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState};
+use base::Result;
+use fetifeti::driver::{Checkpoint, Proposal, Strategy};
+
+/// Number of steps after which the sets come from the method that converges.
+const STEPS: usize = 200;
+
+/// How carefully the set is changed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Caution {
+    Loose,
+    Exact,
+    Single,
+}
+
+/// The strategy.
+pub(super) struct WanderingSets<'a, 'm> {
+    equations: &'a RefCell<Equations<'m>>,
+    state: SetState,
+    /// Whether the set was given, and is the only one.
+    is_given: bool,
+    /// Whether the next set is solved to the end.
+    tight: bool,
+    caution: Caution,
+    visited: HashSet<Vec<bool>>,
+    steps: usize,
+    last: Option<Solved>,
+}
+
+impl<'a, 'm> WanderingSets<'a, 'm> {
+    /// The sets that follow from that of `state`; it is the only one if it was given.
+    pub fn new(
+        equations: &'a RefCell<Equations<'m>>,
+        state: SetState,
+        is_given: bool,
+    ) -> WanderingSets<'a, 'm> {
+        WanderingSets {
+            equations,
+            state,
+            is_given,
+            tight: is_given,
+            caution: Caution::Loose,
+            visited: HashSet::new(),
+            steps: 0,
+            last: None,
+        }
+    }
+
+    /// The end of the loop at this solution, if it is one.
+    fn end(&self, solved: &Solved, refined: bool) -> Option<OuterEnd> {
+        let (reason, failed) = solved.reason.clone();
+        // Sets that come back differ only in rows that rounding decides.
+        let right = refined && self.caution != Caution::Loose && solved.certificate.holds();
+        let settled = solved.stays() || right;
+        if failed {
+            Some((false, reason))
+        } else if self.is_given {
+            Some((!refined || solved.met, reason))
+        } else if settled && solved.to_the_end && solved.held {
+            Some((solved.met, reason))
+        } else {
+            None
+        }
+    }
+
+    /// Moves on to the next set.
+    fn advance(&mut self, solved: Solved, refined: bool) {
+        let right = refined && self.caution != Caution::Loose && solved.certificate.holds();
+        let loose = (solved.stays() || right) && solved.to_the_end && !solved.held;
+        self.tight = solved.stays() && !loose;
+        if self.tight {
+            self.equations.borrow_mut().again(solved);
+            return;
+        }
+        let back = !self.visited.insert(solved.next.clone());
+        let trouble = if loose {
+            Some("DIVERGED_CONTACT_LOOSE")
+        } else if self.steps >= STEPS || (back && self.caution == Caution::Single) {
+            Some("DIVERGED_CONTACT_ITS")
+        } else {
+            None
+        };
+        if back && trouble.is_none() {
+            self.caution = match self.caution {
+                Caution::Loose => Caution::Exact,
+                _ => Caution::Single,
+            };
+            self.visited.clear();
+        }
+        self.state = solved.following();
+        self.state.trouble = trouble;
+    }
+}
+
+impl Strategy<AssembledCourse> for WanderingSets<'_, '_> {
+    fn state(&self) -> &SetState {
+        &self.state
+    }
+
+    fn checkpoint(&self) -> Checkpoint {
+        match self.state.trouble {
+            Some(_) => Checkpoint::HandOver,
+            None => Checkpoint::Update,
+        }
+    }
+
+    fn step(&mut self) -> Result<(OuterStep, Proposal<OuterEnd>)> {
+        let manner = Manner {
+            exact: self.tight || self.caution != Caution::Loose,
+            single: self.caution == Caution::Single,
+            signs: MultiplierSigns::Any,
+        };
+        let (solved, refined) = {
+            let mut equations = self.equations.borrow_mut();
+            let solved = equations.solved(&mut self.state, manner)?;
+            (solved, equations.is_refined())
+        };
+        self.steps += 1;
+        let step = solved.step;
+        if let Some(end) = self.end(&solved, refined) {
+            self.last = Some(solved);
+            return Ok((step, Proposal::End(end)));
+        }
+        self.advance(solved, refined);
+        Ok((step, Proposal::GoOn))
+    }
+
+    fn finish(
+        self: Box<Self>,
+        steps: &[OuterStep],
+        seconds: f64,
+        end: OuterEnd,
+    ) -> Result<ActiveSetEnd> {
+        let last = self.last.expect("the loop ends at a solution");
+        self.equations.borrow().ended(last, (steps, seconds), end)
+    }
+}

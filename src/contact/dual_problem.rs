@@ -1,0 +1,158 @@
+//! The linear method as the inner problem of the contact loop, and its strategies.
+//!
+//! | strategy | proposes |
+//! |---|---|
+//! | [`ActiveSet`] | the equations on the set that multipliers and gaps ask for |
+//! | [`AugmentedLagrangian`] | semismooth Newton steps on springs, and trials of the sets that they find |
+//! | [`Smalbe`] | bound-constrained problems by MPRGP, and trials of the sets that they find |
+//!
+//! A trial wraps a strategy: it is an [`ActiveSet`] that is followed for as long as it comes nearer. A new strategy is a
+//! file with a [`Strategy`](super::strategy::Strategy), and a line in [`begin`](DualProblem::begin).
+
+use super::active_set::ActiveSet;
+use super::certified_signs::{signs, Signs};
+use super::driver::{self, Begin, Begun, InnerProblem, Verdict};
+use super::existence::Existence;
+use super::lagrangian::AugmentedLagrangian;
+use super::settings::{ContactSettings, ContactType};
+use super::smalbe::Smalbe;
+use super::state::{Observer, State, Step};
+use super::strategy::Course;
+use crate::feti::krylov::loads::Loads;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::status::Status;
+use crate::Result;
+
+/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
+/// the method hold that held before. Collective.
+///
+/// # Errors
+/// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
+pub(crate) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    start: Option<&State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    method.with_rows_kept(|| {
+        Existence::new(method, &method.dual(), settings).of_gaps()?;
+        let problem = DualProblem {
+            method,
+            settings,
+            before: start.map_or(0, |s| s.steps),
+        };
+        driver::solve(&problem, start.cloned(), observe)
+    })
+}
+
+/// The types of a loop around the linear method.
+pub(super) struct DualCourse;
+
+impl Course for DualCourse {
+    type State = State;
+    type Step = Step;
+    type End = Status;
+    type Solution = LinearSolution;
+}
+
+/// The linear method with its inequalities.
+struct DualProblem<'m> {
+    method: &'m LinearMethod,
+    settings: &'m ContactSettings,
+    /// Steps of the loop that is continued.
+    before: usize,
+}
+
+impl DualProblem<'_> {
+    /// Asks whether there is a solution, from the λ where the loop is. Few rigid motions are asked about before the
+    /// loop, many only here.
+    fn ask(&self, lambda: &[f64]) -> Result<()> {
+        let (method, dual) = (self.method, self.method.dual());
+        let load = Loads::new(&method.problem, &dual).kernel;
+        Existence::new(method, &dual, self.settings).if_many(&load, lambda)
+    }
+}
+
+impl InnerProblem for DualProblem<'_> {
+    type Course = DualCourse;
+
+    fn begin<'a>(&'a self, begin: Begin<State>) -> Result<Begun<'a, DualCourse>> {
+        let (method, settings) = (self.method, self.settings);
+        let (kind, start) = match begin {
+            Begin::First(start) => (settings.kind, start),
+            Begin::HandOver(state) => (ContactType::AugmentedLagrangian, Some(state)),
+            Begin::Again(state) => (ContactType::ActiveSet, Some(state)),
+        };
+        let cold = || State::cold(&method.dual().stiffness.jump);
+        Ok(match kind {
+            ContactType::ActiveSet => Box::new(ActiveSet::new(method, settings, start.as_ref())?),
+            ContactType::AugmentedLagrangian => {
+                let state = start.unwrap_or_else(cold);
+                Box::new(AugmentedLagrangian::new(method, settings, state)?)
+            }
+            ContactType::Smalbe => {
+                let state = start.unwrap_or_else(cold);
+                Box::new(Smalbe::new(method, settings, state)?)
+            }
+        })
+    }
+
+    fn stop(&self, state: &State) -> Option<Status> {
+        (state.steps >= self.settings.max_it).then_some(Status::ContactSteps)
+    }
+
+    fn is_doubtful(&self, steps: usize) -> bool {
+        steps == self.settings.tuning.doubt_after
+    }
+
+    fn doubt(&self, at: &State) -> Result<()> {
+        self.ask(&at.lambda)
+    }
+
+    fn doubt_end(&self, found: &LinearSolution) -> Result<()> {
+        if found.status.converged() {
+            return Ok(());
+        }
+        self.ask(&found.lambda)
+    }
+
+    fn certify(
+        &self,
+        found: LinearSolution,
+        steps: usize,
+        round: usize,
+    ) -> Result<Verdict<DualCourse>> {
+        let (method, tuning) = (self.method, &self.settings.tuning);
+        let mut certified = method.certify(method.refine(found)?)?;
+        let is_last = round == tuning.certified_rounds;
+        // A certificate that rows on the wrong side have spoilt is for the loop to mend.
+        let spoilt = certified.status == Status::Certificate && !is_last;
+        if !certified.status.converged() && !spoilt {
+            return Ok(Verdict::Done(certified));
+        }
+        match signs(method, tuning, &certified)? {
+            Signs::Right => Ok(Verdict::Done(certified)),
+            Signs::Shared(lambda) => {
+                let shared = method.with_multipliers(certified, lambda)?;
+                Ok(Verdict::Done(shared))
+            }
+            Signs::Wrong(_) if is_last => {
+                certified.status = Status::Certificate;
+                Ok(Verdict::Done(certified))
+            }
+            Signs::Wrong(mut state) => {
+                state.accuracy = tuning.certified_reduction.powi(round as i32 + 1);
+                state.steps = self.before + steps;
+                Ok(Verdict::Wrong(state, certified))
+            }
+        }
+    }
+
+    fn joined(&self, before: &LinearSolution, next: LinearSolution) -> LinearSolution {
+        LinearSolution {
+            iterations: before.iterations + next.iterations,
+            solve_seconds: before.solve_seconds + next.solve_seconds,
+            ..next
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The inner problem of the contact loop: the equations on a set of rows, and the strategies that solve them.
+
+use super::strategy::{Course, Strategy};
+use crate::Result;
+
+/// A strategy that has begun.
+pub type Begun<'a, C> = Box<dyn Strategy<C> + 'a>;
+
+/// Where a strategy begins.
+#[derive(Debug, Clone)]
+pub enum Begin<State> {
+    /// The loop begins, from a state or from scratch.
+    First(Option<State>),
+    /// The strategy before has handed over.
+    HandOver(State),
+    /// The certificate has found rows on the wrong side.
+    Again(State),
+}
+
+/// The word of the certificate.
+pub enum Verdict<C: Course> {
+    /// The end of the loop.
+    Done(C::Solution),
+    /// Rows are on the wrong side of this solution: the loop goes on from the state.
+    Wrong(C::State, C::Solution),
+}
+
+/// A problem with inequalities, and its strategies: the linear method has one, with the equations as its inner problem,
+/// and so has a program that compares with it, with other solvers. All methods are collective.
+pub trait InnerProblem {
+    /// The types of its loop.
+    type Course: Course;
+
+    /// The strategy that goes on from there.
+    ///
+    /// # Errors
+    /// Bodies that the load pushes away for ever; PETSc's own errors.
+    fn begin<'a>(
+        &'a self,
+        begin: Begin<<Self::Course as Course>::State>,
+    ) -> Result<Begun<'a, Self::Course>>;
+
+    /// Why a loop may take no further step from this state; `None` if it may.
+    fn stop(
+        &self,
+        state: &<Self::Course as Course>::State,
+    ) -> Option<<Self::Course as Course>::End>;
+
+    /// Whether the question if there is a solution is due after so many steps of a strategy.
+    fn is_doubtful(&self, steps: usize) -> bool;
+
+    /// Asks whether there is a solution: an error names bodies which the load pushes away for ever. `at` is where the
+    /// loop is.
+    ///
+    /// # Errors
+    /// Such bodies.
+    fn doubt(&self, at: &<Self::Course as Course>::State) -> Result<()>;
+
+    /// The same where a loop has ended, if it has found no solution.
+    ///
+    /// # Errors
+    /// Such bodies.
+    fn doubt_end(&self, found: &<Self::Course as Course>::Solution) -> Result<()>;
+
+    /// Certifies the end of the loop, after so many steps, for the time `round` from 0.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    fn certify(
+        &self,
+        found: <Self::Course as Course>::Solution,
+        steps: usize,
+        round: usize,
+    ) -> Result<Verdict<Self::Course>>;
+
+    /// The solution of a loop that has gone on from a certified one: iterations and seconds of both.
+    fn joined(
+        &self,
+        before: &<Self::Course as Course>::Solution,
+        next: <Self::Course as Course>::Solution,
+    ) -> <Self::Course as Course>::Solution;
+}
