@@ -189,13 +189,8 @@ impl Scene {
             rows::entries::find_interfaces(&bodies, matching, (&spec, &origins), &steps)?;
         spec.notes.extend(left_out.notes);
         spec.asides.extend(left_out.asides);
-        let mut obstacles = rows::obstacles::find_obstacles(
-            &bodies,
-            &spec.obstacles,
-            &spec.form,
-            spec.contacts.len(),
-            Standing::START,
-        )?;
+        let mut obstacles =
+            rows::obstacles::find_obstacles(&bodies, &spec.obstacles, &spec.form, Standing::START)?;
         let part = match written {
             Some(_) => RankPart::WHOLE,
             // Which motions rows see follows from all rows.

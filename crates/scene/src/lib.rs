@@ -65,6 +65,7 @@ pub use model::body::{
     SIDES,
 };
 pub use model::cells::{CellGrid, NumberFormat, Tone};
+pub use model::entry::EntryId;
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};

@@ -18,6 +18,7 @@ use super::body::Body;
 use super::geometry::interface::{BodyInterface, InterfaceShape, Link};
 use super::geometry::matching::NodeMatching;
 use super::geometry::mortar::is_for_contact;
+use super::model::entry::EntryId;
 use super::model::joints::{ContactSpec, Extent, PairSelector};
 use super::model::profile::Profile;
 use super::model::spec::SceneSpec;
@@ -68,7 +69,7 @@ impl Renewal {
             rows: Vec::new(),
             touching: Vec::new(),
             adjusted: HashMap::new(),
-            beside: obstacles::adjusted(obstacles, spec.contacts.len()),
+            beside: obstacles::adjusted(obstacles),
         };
         let mut place = vec![None; interfaces.len()];
         for (k, interface) in interfaces.iter().enumerate() {
@@ -128,7 +129,9 @@ fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &BodyInterface) -> Opt
     if let Some(mortar) = &interface.mortar {
         return Some(mortar.multipliers);
     }
-    let number = interface.entry?.checked_sub(spec.ties.len())?;
+    let Some(EntryId::Contact(number)) = interface.entry else {
+        return None;
+    };
     let contact = &spec.contacts[number];
     let PairSelector::Named(first, _) = &contact.pair else {
         return None;
@@ -215,13 +218,8 @@ impl Renewal {
         let standing = Standing::after(factors, &self.beside);
         let mut interfaces = self.kept.clone();
         interfaces.extend(found);
-        let mut obstacles = obstacles::find_obstacles(
-            bodies,
-            &spec.obstacles,
-            &spec.form,
-            spec.contacts.len(),
-            standing,
-        )?;
+        let mut obstacles =
+            obstacles::find_obstacles(bodies, &spec.obstacles, &spec.form, standing)?;
         let joined = Joined {
             spec: &spec,
             interfaces: &mut interfaces,
@@ -263,7 +261,7 @@ fn sides(
     renewal: &Renewal,
 ) -> Vec<BodyInterface> {
     let mut out = Vec::new();
-    let mut meet = |pair, sides, which, reach, entry: Option<usize>| {
+    let mut meet = |pair, sides, which, reach, entry: Option<EntryId>| {
         let nodal = matching.find(pair, sides, reach).ok().cloned();
         let found = match nodal {
             Some(found) if !is_for_contact(bodies, &found) => Some(found),
@@ -298,7 +296,7 @@ fn sides(
             ([b, a], [sides[1], sides[0]], 1 - which)
         };
         let reach = contact.distance.unwrap_or(f64::INFINITY);
-        meet(pair, sides, which, reach, Some(spec.ties.len() + number));
+        meet(pair, sides, which, reach, Some(EntryId::Contact(number)));
     }
     out
 }

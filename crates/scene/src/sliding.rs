@@ -106,8 +106,8 @@ impl Scene {
     /// For a step that the scene does not have.
     pub fn way_of(&self, obstacle: &Obstacle, step: usize) -> [f64; 3] {
         let factors = Factors::of(&self.steps, step).expect("the step exists");
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
-        obstacle.motion.map(|m| m * factors.gap(entry))
+        let factor = factors.gap(obstacle.entry());
+        obstacle.motion.map(|m| m * factor)
     }
 }
 

@@ -5,6 +5,7 @@ use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::{Inequality, InterfacePoint, PointRow};
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::profile::Limit;
 use crate::model::spec::SceneSpec;
 use crate::model::steps::{Factors, Steps};
@@ -19,14 +20,13 @@ use std::collections::HashMap;
 pub(crate) struct Checks<'a> {
     pub bodies: &'a [Body],
     pub obstacles: &'a [Obstacle],
-    /// Where every contact and obstacle was written, by number of its entry.
-    pub locations: Vec<&'a Location>,
+    pub spec: &'a SceneSpec,
     /// The factors of every load step.
     pub factors: Vec<Factors<'a>>,
 }
 
-/// The tightest bound at one step, and the number of the entry that it comes from.
-type Tightest = (f64, Option<usize>);
+/// The tightest bound at one step, and the entry that it comes from.
+type Tightest = (f64, Option<EntryId>);
 
 impl<'a> Checks<'a> {
     /// The checks of a scene.
@@ -36,12 +36,10 @@ impl<'a> Checks<'a> {
         spec: &'a SceneSpec,
         steps: &'a Option<Steps>,
     ) -> Checks<'a> {
-        let contacts = spec.contacts.iter().map(|c| &c.location);
-        let rest = spec.obstacles.iter().map(|o| &o.location);
         Checks {
             bodies,
             obstacles,
-            locations: contacts.chain(rest).collect(),
+            spec,
             factors: Factors::every(steps),
         }
     }
@@ -164,8 +162,8 @@ impl<'a> Checks<'a> {
     }
 
     /// The place for messages: the entry, or the body if the default made the contact.
-    fn place(&self, entry: Option<usize>, member: BodyNode) -> &Location {
-        let location = entry.and_then(|e| self.locations.get(e).copied());
+    fn place(&self, entry: Option<EntryId>, member: BodyNode) -> &Location {
+        let location = entry.map(|e| self.spec.location_of(e));
         location.unwrap_or(&self.bodies[member.body].spec.location)
     }
 

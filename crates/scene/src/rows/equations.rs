@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::points::InterfacePoint;
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::joints::EquationSpec;
 use crate::validate::agree;
 use base::linalg::union_find::UnionFind;
@@ -40,7 +41,7 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
     if specs.is_empty() {
         return Ok(out);
     }
-    for spec in specs {
+    for (number, spec) in specs.iter().enumerate() {
         let mut terms: Vec<(u64, f64)> = Vec::new();
         let (mut held, mut given) = (Vec::new(), 0.0);
         let mut first: Option<(u64, usize)> = None;
@@ -65,7 +66,8 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equ
         let Some((block, subdomain)) = first else {
             if !agree(given, spec.value) {
                 return Err(Error::input(format!(
-                    "the given values make {given} of an equation that asks for {}",
+                    "the given values make {given} of {}, which asks for {}",
+                    EntryId::Equation(number),
                     spec.value
                 ))
                 .at(&spec.location));

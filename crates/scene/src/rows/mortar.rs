@@ -9,6 +9,7 @@ use super::points::{Inequality, InterfacePoint};
 use crate::body::Body;
 use crate::geometry::interface::{BodyInterface, Link};
 use crate::geometry::mortar_sides::{BodyRow, Surfaces};
+use crate::model::entry::EntryId;
 use base::linalg::vec3::dot;
 use base::Result;
 use elements::form::Form;
@@ -79,10 +80,10 @@ pub(crate) fn collect(
             }
         }
     }
-    let mut known: HashMap<(Option<usize>, BodyNode), Vec<[f64; 3]>> = HashMap::new();
+    let mut known: HashMap<(Option<EntryId>, BodyNode), Vec<[f64; 3]>> = HashMap::new();
     for (k, obstacle) in checks.obstacles.iter().enumerate() {
         // Sides of one body that go on smoothly share a row at their common nodes.
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
+        let entry = obstacle.entry();
         let taken = |node: BodyNode, direction: [f64; 3]| {
             let before = known.get(&(entry, node)).into_iter().flatten();
             tied.contains(&node) || before.into_iter().any(|d| dot(*d, direction) > SMOOTH)

@@ -6,6 +6,7 @@ use super::select::pick;
 use crate::body::Body;
 use crate::geometry::mortar::lacks_signs;
 use crate::geometry::normals::parameters;
+use crate::model::entry::EntryId;
 use crate::model::joints::{Extent, ObstacleSpec};
 use crate::model::profile::{Limit, Limits};
 use crate::model::rigid::Rigid;
@@ -69,31 +70,35 @@ impl<'a> Standing<'a> {
         }
     }
 
-    /// How far the obstacle of entry number `entry` has moved.
-    fn way(&self, spec: &ObstacleSpec, entry: usize) -> [f64; 3] {
+    /// How far the obstacle of an entry has moved.
+    fn way(&self, spec: &ObstacleSpec, entry: EntryId) -> [f64; 3] {
         let factor = self.factors.map_or(0.0, |f| f.gap(Some(entry)));
         spec.motion.map(|m| m * factor)
     }
 }
 
-/// The ways of nodes that count as touching, by number of the entry among the obstacles, body, side and node.
-pub(crate) type Adjusted = HashMap<(usize, usize, usize, usize), [f64; 3]>;
+/// The ways of nodes that count as touching, by entry, body, side and node.
+pub(crate) type Adjusted = HashMap<(EntryId, usize, usize, usize), [f64; 3]>;
 
-/// The ways of nodes that count as touching the obstacles of a scene; `first`: the number of the first obstacle entry.
-pub(crate) fn adjusted(obstacles: &[Obstacle], first: usize) -> Adjusted {
+/// The ways of nodes that count as touching the obstacles of a scene.
+pub(crate) fn adjusted(obstacles: &[Obstacle]) -> Adjusted {
     let mut out = Adjusted::new();
     for obstacle in obstacles {
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
-        let Some(k) = entry.and_then(|e| e.checked_sub(first)) else {
+        let Some(entry) = obstacle.entry() else {
             continue;
         };
         let nodes = obstacle.adjusted.iter();
-        out.extend(nodes.map(|(&node, &way)| ((k, obstacle.body, obstacle.side, node), way)));
+        out.extend(nodes.map(|(&node, &way)| ((entry, obstacle.body, obstacle.side, node), way)));
     }
     out
 }
 
 impl Obstacle {
+    /// Its entry; the first one, where several bound u itself.
+    pub(crate) fn entry(&self) -> Option<EntryId> {
+        self.limits.all().first().and_then(|l| l.entry)
+    }
+
     /// Parameters of one of the nodes along the side, 0 ≤ t ≤ 1.
     pub fn t(&self, node: usize) -> [f64; 2] {
         self.parameters.get(&node).copied().unwrap_or_default()
@@ -114,13 +119,11 @@ impl Obstacle {
     }
 }
 
-/// The obstacles of a scene, by body, side and bound, where they stand; `first` is the number of the first obstacle
-/// entry.
+/// The obstacles of a scene, by body, side and bound, where they stand.
 pub(crate) fn find_obstacles(
     bodies: &[Body],
     entries: &[ObstacleSpec],
     form: &Form,
-    first: usize,
     standing: Standing<'_>,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
@@ -128,6 +131,7 @@ pub(crate) fn find_obstacles(
     // Bodies that have moved may have left an obstacle.
     let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
+        let id = EntryId::Obstacle(k);
         let fail = |message: String| Err(Error::input(message).at(&entry.location));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
         let elastic = entry.rigid.is_some() || entry.surface.is_some();
@@ -156,7 +160,7 @@ pub(crate) fn find_obstacles(
         let number = if elastic { k + 1 } else { 0 };
         let mut missed = None;
         let before = found.len();
-        let way = standing.way(entry, first + k);
+        let way = standing.way(entry, id);
         for (b, &side) in chosen.flat_map(|b| entry.sides.iter().map(move |side| (b, side))) {
             let (mut selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
             let mut near = BTreeMap::new();
@@ -221,7 +225,7 @@ pub(crate) fn find_obstacles(
                             continue;
                         }
                         let adjusted = match standing.adjusted {
-                            Some(known) => known.get(&(k, b, side, node)).copied(),
+                            Some(known) => known.get(&(id, b, side, node)).copied(),
                             None if distance.abs() <= entry.adjust => {
                                 Some(normal.map(|n| 0.0 - n * distance))
                             }
@@ -249,7 +253,7 @@ pub(crate) fn find_obstacles(
                     of_side.limits.push(Limit {
                         node,
                         value: if upper { value } else { 0.0 - value },
-                        entry: Some(first + k),
+                        entry: Some(id),
                     });
                 }
             }
