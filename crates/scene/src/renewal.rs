@@ -24,8 +24,8 @@ use super::model::profile::Profile;
 use super::model::spec::SceneSpec;
 use super::model::steps::{Factors, Steps};
 use super::rows::all::{Joined, SceneRows};
-use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Adjusted, Obstacle, Standing};
+use super::rows::row::Row;
 use super::rows::{entries, obstacles, surfaces};
 use base::linalg::vec3::dot;
 use base::{Error, Result};
@@ -40,7 +40,7 @@ pub(crate) struct Renewal {
     /// The interfaces that stay as they are: ties, faces that are tied in part, corners.
     kept: Vec<BodyInterface>,
     /// Their rows, where nodes do not match.
-    rows: Vec<MortarRow>,
+    rows: Vec<Row>,
     /// The sides of bodies that touched to begin with, and which of them carries multipliers.
     touching: Vec<([usize; 2], [usize; 2], usize)>,
     /// The adjustments that `adjust` made to begin with: the way from a node that carries a multiplier, by the other
@@ -60,7 +60,7 @@ impl Renewal {
         bodies: &[Body],
         interfaces: &[BodyInterface],
         obstacles: &[Obstacle],
-        mortar: &[MortarRow],
+        rows: &[Row],
     ) -> Result<Renewal> {
         check(spec)?;
         let mut out = Renewal {
@@ -95,7 +95,7 @@ impl Renewal {
                     }));
             }
         }
-        for row in mortar {
+        for row in rows.iter().filter(|row| row.is_mortar()) {
             let RowSource::Interface(k) = row.source else {
                 continue;
             };
@@ -105,9 +105,14 @@ impl Renewal {
                     body.first_subdomain + body.mesh().owner(m.node)
                 };
                 let owners = row.members.iter().flatten().map(|m| owner(*m));
-                out.rows.push(MortarRow {
+                out.rows.push(Row {
                     source: RowSource::Interface(interface),
-                    block: row.terms.iter().map(|t| t.0).min().unwrap_or_default(),
+                    block: row
+                        .terms(bodies)
+                        .iter()
+                        .map(|t| t.0)
+                        .min()
+                        .unwrap_or_default(),
                     subdomain: owners.min().unwrap_or_default(),
                     ..row.clone()
                 });

@@ -34,9 +34,9 @@ pub struct Obstacle {
     /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
     /// In elasticity, in place of `rigid`, the part of the rigid body's surface that lies opposite the side: the rows
-    /// are those of [`Scene::mortar`].
+    /// are those of [`Scene::mortar_rows`].
     ///
-    /// [`Scene::mortar`]: crate::Scene::mortar
+    /// [`Scene::mortar_rows`]: crate::Scene::mortar_rows
     pub surface: Option<Opposite>,
     /// The way that the rigid body moves, without the factors of load steps.
     pub motion: [f64; 3],
@@ -127,7 +127,7 @@ pub(crate) fn find_obstacles(
     standing: Standing<'_>,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
-    let mut found: BTreeMap<(usize, usize, usize, bool), SideObstacleData> = BTreeMap::new();
+    let mut found: BTreeMap<ObstacleKey, SideObstacleData> = BTreeMap::new();
     // Bodies that have moved may have left an obstacle.
     let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
@@ -157,7 +157,7 @@ pub(crate) fn find_obstacles(
                 }
             },
         };
-        let number = if elastic { k + 1 } else { 0 };
+        let own = elastic.then_some(k);
         let mut missed = None;
         let before = found.len();
         let way = standing.way(entry, id);
@@ -183,7 +183,7 @@ pub(crate) fn find_obstacles(
                     return fail(why);
                 }
                 selected.retain(|(node, _)| near.contains_key(node));
-                let of_side = found.entry((b, side, number, true)).or_default();
+                let of_side = found.entry((b, side, own, true)).or_default();
                 of_side.surface = Some(opposite);
             }
             if let Some(rigid) = &entry.rigid {
@@ -195,13 +195,13 @@ pub(crate) fn find_obstacles(
                 };
                 if let Some(opposite) = opposite {
                     near.clone_from(&opposite.nearest);
-                    let of_side = found.entry((b, side, number, true)).or_default();
+                    let of_side = found.entry((b, side, own, true)).or_default();
                     of_side.surface = Some(opposite);
                 }
             }
             for (key, upper, bound) in bounds {
                 let Some(bound) = bound else { continue };
-                let of_side = found.entry((b, side, number, upper)).or_default();
+                let of_side = found.entry((b, side, own, upper)).or_default();
                 for &(node, t) in &selected {
                     let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
                     if let Some(rigid) = &entry.rigid {
@@ -265,13 +265,15 @@ pub(crate) fn find_obstacles(
             return fail(why);
         }
     }
-    let named = |(key, of_side): ((usize, usize, usize, bool), SideObstacleData)| {
+    let named = |(key, of_side): (ObstacleKey, SideObstacleData)| {
         let surface = of_side.surface.as_ref().and_then(|s| s.name.as_ref());
-        let (body, side, number, upper) = key;
-        let what = match (number, upper) {
-            (0, false) => "below".to_string(),
-            (0, true) => "above".to_string(),
-            (k, _) => surface.map_or_else(|| format!("obstacle {k}"), |name| name.clone()),
+        let (body, side, own, upper) = key;
+        let what = match (own, upper) {
+            (None, false) => "below".to_string(),
+            (None, true) => "above".to_string(),
+            (Some(k), _) => {
+                surface.map_or_else(|| EntryId::Obstacle(k).to_string(), |name| name.clone())
+            }
         };
         Obstacle {
             body,
@@ -283,11 +285,9 @@ pub(crate) fn find_obstacles(
                 bodies[body].mesh().side_name(side)
             ),
             limits: Limits::new(of_side.limits),
-            rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+            rigid: own.and_then(|k| entries[k].rigid),
             surface: of_side.surface,
-            motion: number
-                .checked_sub(1)
-                .map_or([0.0; 3], |k| entries[k].motion),
+            motion: own.map_or([0.0; 3], |k| entries[k].motion),
             nearest: of_side.nearest,
             adjusted: of_side.adjusted,
             parameters: of_side.parameters,
@@ -295,6 +295,9 @@ pub(crate) fn find_obstacles(
     };
     Ok(found.into_iter().map(named).collect())
 }
+
+/// Body, side, number of the entry of a rigid body, and whether the bound is an upper one.
+type ObstacleKey = (usize, usize, Option<usize>, bool);
 
 /// The data of the entries for the nodes of one side.
 #[derive(Default)]
