@@ -52,7 +52,7 @@ pub enum RowSource {
     Interface(usize),
     /// A body beside a rigid obstacle; in a scene the index into `Scene::obstacles`.
     Obstacle(usize),
-    /// An equation between unknowns; in a scene the index into `Scene::equations`.
+    /// An equation between unknowns; in a scene its number among those that given values do not decide.
     Equation(usize),
 }
 

@@ -54,10 +54,11 @@ fn contact(a: &str, b: &str, multipliers: &str) -> String {
 
 /// The smallest singular value of the rows, each divided by its length: how far they are from being dependent.
 fn independence(scene: &Scene) -> f64 {
-    let rows = &scene.mortar;
+    let rows = scene.mortar_rows().map(|row| row.terms(&scene.bodies));
+    let rows: Vec<_> = rows.collect();
     let unit = |k: usize| -> BTreeMap<u64, f64> {
-        let length = rows[k].terms.iter().map(|t| t.1 * t.1).sum::<f64>().sqrt();
-        let each = rows[k].terms.iter();
+        let length = rows[k].iter().map(|t| t.1 * t.1).sum::<f64>().sqrt();
+        let each = rows[k].iter();
         each.map(|&(dof, v)| (dof, v / length)).collect()
     };
     let units: Vec<_> = (0..rows.len()).map(unit).collect();

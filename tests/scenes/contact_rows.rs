@@ -84,7 +84,7 @@ fn the_first_body_of_an_entry_carries_the_multipliers() {
                 let entry = format!("[[contact]]\nbodies = {bodies:?}\n{own}{more}");
                 let both = body("a", 0.0, 4, "") + &body("b", 1.0, 2, "");
                 let scene = parse(&format!("physics = \"elasticity\"\n{both}{entry}"));
-                scene.mortar.len()
+                scene.mortar_rows().count()
             };
             assert_eq!(of(""), first, "{bodies:?}");
             for (k, n) in [first, second].into_iter().enumerate() {

@@ -155,9 +155,11 @@ fn rows_at(point: [f64; 2], entries: &str) -> usize {
     };
     let points: Vec<_> = scene.points.iter().filter(at).collect();
     assert!(points.len() <= 1);
-    points
-        .first()
-        .map_or(0, |p| p.rows.iter().filter(|r| r.holds).count())
+    let of = |p: &&scene::InterfacePoint| {
+        let rows = scene.rows.iter();
+        rows.filter(|r| r.block == p.block && r.holds).count()
+    };
+    points.first().map_or(0, of)
 }
 
 #[test]
@@ -216,7 +218,8 @@ size = 1
 elements = 2
 ";
     let scene = Scene::parse("t.toml", text).unwrap();
-    let rows: Vec<usize> = scene.points.iter().map(|p| p.rows.len()).collect();
+    let points = scene.rows.chunk_by(|a, b| a.block == b.block);
+    let rows: Vec<usize> = points.map(|of_point| of_point.len()).collect();
     assert_eq!(rows.iter().sum::<usize>(), 2 + 3 + 2 + 2);
     assert_eq!(rows.iter().filter(|&&r| r == 3).count(), 1);
     // Two bodies that meet in one corner only.

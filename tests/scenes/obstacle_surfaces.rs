@@ -59,7 +59,7 @@ fn a_flat_surface_is_the_plane() {
         let plane = format!("plane = {{ point = {point}, normal = {normal} }}");
         let known = solve(&model.scene(&block(dim, order, &plane)));
         let scene = model.scene(&block(dim, order, MESH));
-        assert_eq!(scene.mortar.len(), known.len());
+        assert_eq!(scene.mortar_rows().count(), known.len());
         assert_eq!(scene.plan().obstacle_rows, known.len());
         let found = solve(&scene);
         let open = known.iter().filter(|r| !r.holds()).count();
@@ -242,7 +242,7 @@ fn sides_that_go_on_share_a_node() {
         dirichlet = { left = { x = 0 } }\nload = [0, -1]\n[[obstacle]]\nbody = \"b0\"\nside = [\"one\", \"two\"]\n\
         surface = \"die\"\n";
     let scene = model.scene(text);
-    assert_eq!(scene.mortar.len(), n + 1);
+    assert_eq!(scene.mortar_rows().count(), n + 1);
     assert!(scene.notes.is_empty(), "{:?}", scene.notes);
     let rows = solve(&scene);
     let force: f64 = rows.iter().map(|r| r.multiplier).sum();
@@ -269,8 +269,8 @@ fn mistakes_get_a_sentence() {
     assert_eq!(
         with("turned", &line("die", &up))
             .scene(&of(&format!("{MESH}\nreverse = true")))
-            .mortar
-            .len(),
+            .mortar_rows()
+            .count(),
         9
     );
     let points = flat.map(|[x, y]| [x, y, 0.0]);

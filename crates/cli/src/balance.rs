@@ -155,7 +155,8 @@ fn of_subdomain(scene: &Scene, sub: &Subdomain, u: &[f64], step: usize) -> Resul
 
 /// The bodies with a given displacement along an oblique axis, increasing.
 fn supported(scene: &Scene) -> Vec<usize> {
-    let equations = scene.equations.iter().filter(|e| e.support);
+    let equations = scene.rows.iter().filter_map(|row| row.combination.as_ref());
+    let equations = equations.filter(|e| e.support);
     let dofs = equations.flat_map(|e| e.terms.iter().chain(&e.held));
     let body = |of_body: u64| scene.bodies.partition_point(|b| b.first_dof <= of_body) - 1;
     distinct(dofs.map(|t| body(t.0)))

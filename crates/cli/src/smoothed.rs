@@ -106,12 +106,12 @@ pub(super) fn warnings(scene: &Scene, rows: &[SolvedRow]) -> Vec<String> {
 /// The rows that touch by interface, where nodes do not match.
 fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, PressureSide<'a>> {
     let mut out: BTreeMap<usize, PressureSide> = BTreeMap::new();
-    if scene.mortar.is_empty() {
+    type Key = (RowSource, [Option<BodyNode>; 2]);
+    let contacts = scene.mortar_rows().filter(|m| m.law.is_inequality());
+    let of: HashMap<Key, _> = contacts.map(|m| ((m.source, m.members), m)).collect();
+    if of.is_empty() {
         return out;
     }
-    type Key = (RowSource, [Option<BodyNode>; 2]);
-    let contacts = scene.mortar.iter().filter(|m| m.inequality.is_some());
-    let of: HashMap<Key, _> = contacts.map(|m| ((m.source, m.members), m)).collect();
     let mut straight: HashMap<usize, bool> = HashMap::new();
     for (place, row) in rows.iter().enumerate() {
         let RowSource::Interface(k) = row.label.source else {
@@ -143,12 +143,12 @@ fn sides<'a>(scene: &'a Scene, rows: &[SolvedRow]) -> BTreeMap<usize, PressureSi
             weights: Vec::new(),
             scene,
         });
-        let theirs = &mortar.weights[other];
-        let sum: f64 = theirs.iter().map(|(_, m)| m.abs()).sum();
+        let theirs = || mortar.side(other);
+        let sum: f64 = theirs().map(|(_, m)| m.abs()).sum();
         side.places.push(place);
         side.area.push(row.label.area);
         side.raw.push(pressure);
-        let weights = theirs.iter().map(|&(q, m)| (q, m.abs() / sum));
+        let weights = theirs().map(|(q, m)| (q.node, m.abs() / sum));
         side.weights.push(weights.collect());
     }
     out

@@ -15,10 +15,9 @@ use super::model::steps::Steps;
 use super::part::RankPart;
 use super::renewal::{may_renew, Renewal};
 use super::rows::all::{Joined, SceneRows};
-use super::rows::equations::Equation;
-use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Obstacle, Standing};
 use super::rows::points::InterfacePoint;
+use super::rows::row::Row;
 use super::{axis, cut, read, rows, validate};
 use crate::part;
 use base::Result;
@@ -67,10 +66,10 @@ pub struct Scene {
     pub interfaces: Interfaces,
     /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`InterfacePoint::block`].
     pub points: Vec<InterfacePoint>,
-    /// Equations between displacements beside those of ties.
-    pub equations: Vec<Equation>,
-    /// Rows between sides whose nodes do not match.
-    pub mortar: Vec<MortarRow>,
+    /// Ties, contacts and bounds at the points, in their order, pairs before obstacles; then equations between
+    /// displacements; then rows between sides whose nodes do not match. [`Scene::rows`](Scene::rows()) makes rows of B
+    /// of them.
+    pub rows: Vec<Row>,
     /// Points of interest.
     pub probes: Vec<ProbeSpec>,
     /// Rigid obstacles, by body, side and bound.
@@ -189,13 +188,8 @@ impl Scene {
             rows::entries::find_interfaces(&bodies, matching, (&spec, &origins), &steps)?;
         spec.notes.extend(left_out.notes);
         spec.asides.extend(left_out.asides);
-        let mut obstacles = rows::obstacles::find_obstacles(
-            &bodies,
-            &spec.obstacles,
-            &spec.form,
-            spec.contacts.len(),
-            Standing::START,
-        )?;
+        let mut obstacles =
+            rows::obstacles::find_obstacles(&bodies, &spec.obstacles, &spec.form, Standing::START)?;
         let part = match written {
             Some(_) => RankPart::WHOLE,
             // Which motions rows see follows from all rows.
@@ -212,13 +206,12 @@ impl Scene {
         };
         let SceneRows {
             points,
-            mortar,
-            equations,
+            rows,
             notes,
         } = joined.rows(&mut bodies, &steps, None)?;
         obstacles.iter_mut().for_each(Obstacle::finish);
         let renewal = written
-            .map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &obstacles, &mortar));
+            .map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &obstacles, &rows));
         let renewal = renewal.transpose()?.map(Arc::new);
         spec.notes.extend(notes);
         let all = spec.ties.iter().map(|t| &t.pair);
@@ -226,7 +219,7 @@ impl Scene {
         // Who writes "free" and names pairs wants no others.
         if spec.default != ByDefault::Free || all.any(|pair| *pair == PairSelector::All) {
             let language = loose::Language::Scene;
-            let loose = loose::sentences(&bodies, &interfaces, &equations, &spec.form, language);
+            let loose = loose::sentences(&bodies, &interfaces, &rows, &spec.form, language);
             spec.notes.extend(loose);
         }
         let deep = overlap::sentences(&bodies, &interfaces, &obstacles, &spec.form);
@@ -235,7 +228,7 @@ impl Scene {
         let tied = mostly_tied(&interfaces);
         let interfaces = match part {
             RankPart::WHOLE => interfaces.into(),
-            part => part::needed(interfaces, &bodies, &points, part),
+            part => part::needed(interfaces, &bodies, &rows, part),
         };
         let mut scene = Scene {
             options: spec.options,
@@ -244,8 +237,7 @@ impl Scene {
             bodies,
             interfaces,
             points,
-            equations,
-            mortar,
+            rows,
             probes: spec.probes,
             obstacles,
             steps,

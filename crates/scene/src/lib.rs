@@ -67,6 +67,7 @@ pub use model::body::{
     SIDES,
 };
 pub use model::cells::{CellGrid, NumberFormat, Tone};
+pub use model::entry::EntryId;
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};
@@ -85,9 +86,9 @@ pub use model::steps::Steps;
 pub use numbering::Numbering;
 pub use plan::{BodyPlan, InterfacePlan, ScenePlan};
 pub use read::read;
-pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
-pub use rows::points::{Inequality, InterfacePoint, PointRow};
+pub use rows::points::InterfacePoint;
+pub use rows::row::{Bound, Combination, Row};
 pub use rows::terms::{RowTerm, RowTerms};
 pub use side_pair::{SidePair, SurfaceObstacle};
 pub use stepper::{StepSolution, Stepper, StepperState};

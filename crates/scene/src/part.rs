@@ -8,7 +8,7 @@ use super::geometry::interface::BodyInterface;
 use super::interfaces::Interfaces;
 use super::model::spec::SceneSpec;
 use super::rows::obstacles::Obstacle;
-use super::rows::points::InterfacePoint;
+use super::rows::row::Row;
 use fetifeti::problem::RowSource;
 use parallel::contiguous_share;
 
@@ -83,18 +83,17 @@ impl RankPart {
     }
 }
 
-/// The interfaces that a rank needs: those of its bodies and of the rows at `points`. The first rank reports all; of
+/// The interfaces that a rank needs: those of its bodies and of its rows. The first rank reports all; of
 /// the others it drops what they know node by node.
 pub(super) fn needed(
     mut interfaces: Vec<BodyInterface>,
     bodies: &[Body],
-    points: &[InterfacePoint],
+    rows: &[Row],
     part: RankPart,
 ) -> Interfaces {
     let owns = part.owns(bodies);
     let own = |body: &usize| bodies[*body].subdomains().any(&owns);
-    let rows = points.iter().flat_map(|p| &p.rows);
-    let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
+    let used: HashSet<RowSource> = rows.iter().map(|row| row.source).collect();
     let needs = |k: usize, interface: &BodyInterface| {
         interface.bodies.iter().any(own) || used.contains(&RowSource::Interface(k))
     };

@@ -4,8 +4,9 @@ use super::body::Body;
 use super::checked::Scene;
 use super::geometry::interface::{InterfaceShape, Link};
 use super::numbering::Numbering;
-use super::rows::points::PointRow;
+use super::rows::row::Row;
 use base::Result;
+use fetifeti::problem::RowSource;
 use mesh::Mesh;
 use std::collections::HashSet;
 
@@ -74,7 +75,7 @@ pub struct ScenePlan {
     pub primal: usize,
     /// Rows of B_loc.
     pub local_multipliers: usize,
-    /// Rows of B_gl that hold initially, inequalities included.
+    /// Rows of B_gl that hold initially, inequalities included, without equations.
     pub global_multipliers: usize,
     /// Rows of B_gl that do not hold initially: candidate contact nodes of faces that are tied in part.
     pub open_rows: usize,
@@ -117,22 +118,13 @@ impl Scene {
             assembled: Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
-            global_multipliers: self.rows_that(|r| r.holds) + self.mortar.len(),
-            open_rows: self.rows_that(|r| !r.holds && r.inequality.is_none()),
+            global_multipliers: self
+                .rows_that(|r| r.holds && !matches!(r.source, RowSource::Equation(_))),
+            open_rows: self.rows_that(|r| !r.holds && !r.law.is_inequality()),
             contact_pairs: self.interfaces.iter().filter(|i| i.has_contact()).count(),
-            contact_rows: self.rows_that(|r| r.inequality.is_some() && !r.is_beside_obstacle())
-                + self
-                    .mortar
-                    .iter()
-                    .filter(|m| m.inequality.is_some() && !m.is_beside_obstacle())
-                    .count(),
+            contact_rows: self.rows_that(|r| r.law.is_inequality() && !r.is_beside_obstacle()),
             obstacles: self.obstacles.len(),
-            obstacle_rows: self.rows_that(PointRow::is_beside_obstacle)
-                + self
-                    .mortar
-                    .iter()
-                    .filter(|m| m.is_beside_obstacle())
-                    .count(),
+            obstacle_rows: self.rows_that(Row::is_beside_obstacle),
             steps: self.steps.as_ref().map(|s| s.times.len()),
             bodies,
         }
@@ -146,8 +138,8 @@ impl Scene {
         (0..self.n_subdomains()).try_for_each(|s| self.subdomain(s).map(drop))
     }
 
-    fn rows_that(&self, is: impl Fn(&PointRow) -> bool) -> usize {
-        self.each_row(|_| true).filter(|(_, r)| is(r)).count()
+    fn rows_that(&self, is: impl Fn(&Row) -> bool) -> usize {
+        self.rows.iter().filter(|r| is(r)).count()
     }
 
     fn body_plan(&self, b: usize) -> BodyPlan {

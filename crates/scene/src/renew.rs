@@ -52,7 +52,7 @@ impl Scene {
         let (interfaces, obstacles, rows) = found?;
         self.steps = steps;
         (self.interfaces, self.obstacles) = (interfaces.into(), obstacles);
-        (self.points, self.mortar, self.equations) = (rows.points, rows.mortar, rows.equations);
+        (self.points, self.rows) = (rows.points, rows.rows);
         Ok(())
     }
 }

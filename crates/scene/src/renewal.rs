@@ -18,13 +18,14 @@ use super::body::Body;
 use super::geometry::interface::{BodyInterface, InterfaceShape, Link};
 use super::geometry::matching::NodeMatching;
 use super::geometry::mortar::is_for_contact;
+use super::model::entry::EntryId;
 use super::model::joints::{ContactSpec, Extent, PairSelector};
 use super::model::profile::Profile;
 use super::model::spec::SceneSpec;
 use super::model::steps::{Factors, Steps};
 use super::rows::all::{Joined, SceneRows};
-use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::{Adjusted, Obstacle, Standing};
+use super::rows::row::Row;
 use super::rows::{entries, obstacles, surfaces};
 use base::linalg::vec3::dot;
 use base::{Error, Result};
@@ -39,7 +40,7 @@ pub(crate) struct Renewal {
     /// The interfaces that stay as they are: ties, faces that are tied in part, corners.
     kept: Vec<BodyInterface>,
     /// Their rows, where nodes do not match.
-    rows: Vec<MortarRow>,
+    rows: Vec<Row>,
     /// The sides of bodies that touched to begin with, and which of them carries multipliers.
     touching: Vec<([usize; 2], [usize; 2], usize)>,
     /// The adjustments that `adjust` made to begin with: the way from a node that carries a multiplier, by the other
@@ -59,7 +60,7 @@ impl Renewal {
         bodies: &[Body],
         interfaces: &[BodyInterface],
         obstacles: &[Obstacle],
-        mortar: &[MortarRow],
+        rows: &[Row],
     ) -> Result<Renewal> {
         check(spec)?;
         let mut out = Renewal {
@@ -68,7 +69,7 @@ impl Renewal {
             rows: Vec::new(),
             touching: Vec::new(),
             adjusted: HashMap::new(),
-            beside: obstacles::adjusted(obstacles, spec.contacts.len()),
+            beside: obstacles::adjusted(obstacles),
         };
         let mut place = vec![None; interfaces.len()];
         for (k, interface) in interfaces.iter().enumerate() {
@@ -94,7 +95,7 @@ impl Renewal {
                     }));
             }
         }
-        for row in mortar {
+        for row in rows.iter().filter(|row| row.is_mortar()) {
             let RowSource::Interface(k) = row.source else {
                 continue;
             };
@@ -104,9 +105,14 @@ impl Renewal {
                     body.first_subdomain + body.mesh().owner(m.node)
                 };
                 let owners = row.members.iter().flatten().map(|m| owner(*m));
-                out.rows.push(MortarRow {
+                out.rows.push(Row {
                     source: RowSource::Interface(interface),
-                    block: row.terms.iter().map(|t| t.0).min().unwrap_or_default(),
+                    block: row
+                        .terms(bodies)
+                        .iter()
+                        .map(|t| t.0)
+                        .min()
+                        .unwrap_or_default(),
                     subdomain: owners.min().unwrap_or_default(),
                     ..row.clone()
                 });
@@ -128,7 +134,9 @@ fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &BodyInterface) -> Opt
     if let Some(mortar) = &interface.mortar {
         return Some(mortar.multipliers);
     }
-    let number = interface.entry?.checked_sub(spec.ties.len())?;
+    let Some(EntryId::Contact(number)) = interface.entry else {
+        return None;
+    };
     let contact = &spec.contacts[number];
     let PairSelector::Named(first, _) = &contact.pair else {
         return None;
@@ -215,13 +223,8 @@ impl Renewal {
         let standing = Standing::after(factors, &self.beside);
         let mut interfaces = self.kept.clone();
         interfaces.extend(found);
-        let mut obstacles = obstacles::find_obstacles(
-            bodies,
-            &spec.obstacles,
-            &spec.form,
-            spec.contacts.len(),
-            standing,
-        )?;
+        let mut obstacles =
+            obstacles::find_obstacles(bodies, &spec.obstacles, &spec.form, standing)?;
         let joined = Joined {
             spec: &spec,
             interfaces: &mut interfaces,
@@ -263,7 +266,7 @@ fn sides(
     renewal: &Renewal,
 ) -> Vec<BodyInterface> {
     let mut out = Vec::new();
-    let mut meet = |pair, sides, which, reach, entry: Option<usize>| {
+    let mut meet = |pair, sides, which, reach, entry: Option<EntryId>| {
         let nodal = matching.find(pair, sides, reach).ok().cloned();
         let found = match nodal {
             Some(found) if !is_for_contact(bodies, &found) => Some(found),
@@ -298,7 +301,7 @@ fn sides(
             ([b, a], [sides[1], sides[0]], 1 - which)
         };
         let reach = contact.distance.unwrap_or(f64::INFINITY);
-        meet(pair, sides, which, reach, Some(spec.ties.len() + number));
+        meet(pair, sides, which, reach, Some(EntryId::Contact(number)));
     }
     out
 }

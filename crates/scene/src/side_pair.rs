@@ -39,12 +39,9 @@ impl Scene {
         let last = Factors::last(&self.steps);
         let obstacles = self.obstacles.iter().enumerate();
         let found = obstacles.filter_map(|(k, o)| {
-            let rows = self.mortar.iter();
+            let rows = self.mortar_rows();
             let rows = rows.filter(|r| r.source == RowSource::Obstacle(k));
-            let gaps = rows.filter_map(|r| {
-                let inequality = r.inequality.as_ref()?;
-                Some(inequality.distance + last.bound(&inequality.limits).0)
-            });
+            let gaps = rows.filter_map(|r| Some(r.bound.as_ref()?.gap(&last)));
             let gaps: Vec<f64> = gaps.collect();
             let ends = [f64::INFINITY, f64::NEG_INFINITY];
             Some(SurfaceObstacle {

@@ -9,8 +9,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::checked::Scene;
 use super::displaced::Displaced;
 use super::model::steps::Factors;
-use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
+use super::rows::row::Row;
 use base::linalg::vec3::{cross, dot, minus, norm};
 use bytemuck::{Pod, Zeroable};
 use elements::mortar::across;
@@ -96,7 +96,7 @@ struct Sliders<'a> {
     /// How far every obstacle has moved.
     motions: Vec<[f64; 3]>,
     /// The weights of nodes in rows between sides whose nodes do not match.
-    mortar: FxHashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
+    mortar: FxHashMap<(RowSource, [Option<BodyNode>; 2]), &'a Row>,
 }
 
 impl Scene {
@@ -106,8 +106,8 @@ impl Scene {
     /// For a step that the scene does not have.
     pub fn way_of(&self, obstacle: &Obstacle, step: usize) -> [f64; 3] {
         let factors = Factors::of(&self.steps, step).expect("the step exists");
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
-        obstacle.motion.map(|m| m * factors.gap(entry))
+        let factor = factors.gap(obstacle.entry());
+        obstacle.motion.map(|m| m * factor)
     }
 }
 
@@ -139,7 +139,7 @@ impl<'a> Sliders<'a> {
             }
             faces.insert((body, side), outlines);
         }
-        let mortar = scene.mortar.iter().filter(|m| m.inequality.is_some());
+        let mortar = scene.mortar_rows().filter(|m| m.law.is_inequality());
         Sliders {
             scene,
             faces,
@@ -194,11 +194,7 @@ impl<'a> Sliders<'a> {
             let Some(member) = member else { continue };
             match row {
                 None => add(member, sign),
-                Some(row) => {
-                    let body = member.body;
-                    let terms = row.weights[k].iter();
-                    terms.for_each(|&(node, w)| add(BodyNode { body, node }, sign * w));
-                }
+                Some(row) => row.side(k).for_each(|(node, w)| add(node, sign * w)),
             }
         }
         out

@@ -204,6 +204,8 @@ fn points_and_given_values_are_found_by_way_of_bodies_in_between() {
                 let owns = wanted.owns(&whole.bodies);
                 let points = whole.points.iter().filter(|p| owns(p.subdomain));
                 assert!(part.points.iter().eq(points), "{kind}: {rank} of {ranks}");
+                let rows = whole.rows_of(&owns);
+                assert!(part.rows.iter().eq(rows), "{kind}: {rank} of {ranks}");
                 assert_eq!(given(&part), given(&whole), "{kind}: {rank} of {ranks}");
             }
         }
@@ -228,7 +230,7 @@ fn parts_know_the_interfaces_of_their_bodies_and_rows() {
         let known: Vec<(usize, &BodyInterface)> = scene.interfaces.numbered().collect();
         // The first rank reports all.
         assert_eq!(known.len() == whole.interfaces.len(), rank == 0, "{rank}");
-        let rows = scene.points.iter().flat_map(|p| &p.rows);
+        let rows = scene.rows.iter();
         let used: HashSet<RowSource> = rows.map(|row| row.source).collect();
         let share = share(&scene.bodies, ranks, rank);
         let own = |&body: &usize| share.contains(&scene.bodies[body].first_subdomain);

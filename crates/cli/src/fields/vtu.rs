@@ -124,7 +124,7 @@ impl Gathered {
             fields = fields.with_areas();
         }
         // The pieces of a grid have the same arrays.
-        if scene.has_pressure() && scene.mortar.iter().any(|m| m.inequality.is_some()) {
+        if scene.has_pressure() && scene.mortar_rows().any(|m| m.law.is_inequality()) {
             fields = fields.with_smoothed();
         }
         let (smoothed, _) = smoothed(scene, rows);

@@ -208,11 +208,11 @@ impl Motions {
                 }
             }
         }
-        for equation in &scene.equations {
-            out.insert(&self.of_terms(scene, &equation.terms), 0.0);
-        }
-        for row in scene.mortar.iter().filter(|row| row.inequality.is_none()) {
-            out.insert(&self.of_terms(scene, &row.terms), 0.0);
+        for row in scene.rows.iter().filter(|row| !row.law.is_inequality()) {
+            // The others are ties of points.
+            if row.combination.is_some() {
+                out.insert(&self.of_terms(scene, &row.terms(&scene.bodies)), 0.0);
+            }
         }
         out
     }

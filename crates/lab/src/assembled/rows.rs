@@ -45,12 +45,6 @@ impl Inequalities {
     /// The inequalities of `scene`. The rows are meaningless where `layout.trouble` is set.
     pub fn new(scene: &Scene, layout: &UnknownLayout) -> Inequalities {
         let all = scene.rows(&|_| true);
-        let subdomains = scene
-            .points
-            .iter()
-            .flat_map(|point| std::iter::repeat_n(point.subdomain, point.rows.len()))
-            .chain(scene.equations.iter().map(|e| e.subdomain))
-            .chain(scene.mortar.iter().map(|m| m.subdomain));
         let mut out = Inequalities {
             held: layout.held.clone(),
             forms: layout.forms.clone(),
@@ -58,9 +52,10 @@ impl Inequalities {
         };
         // Unknowns with coefficient 1 and −1.
         let mut ends: Vec<[Option<u64>; 2]> = Vec::new();
-        for (row, subdomain) in all.iter().zip(subdomains) {
+        for (row, of_scene) in all.iter().zip(&scene.rows) {
             let inequality = row.law.is_inequality();
-            out.from.push((subdomain, inequality.then_some(ends.len())));
+            out.from
+                .push((of_scene.subdomain, inequality.then_some(ends.len())));
             if !inequality {
                 continue;
             }

@@ -174,7 +174,7 @@ impl DeckScenes {
         let loose = loose::sentences(
             &scene.bodies,
             scene.interfaces.iter().as_slice(),
-            &scene.equations,
+            &scene.rows,
             &scene.form,
             loose::Language::Deck,
         );

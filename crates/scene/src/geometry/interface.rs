@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::mortar_sides::Mortar;
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::profile::Limits;
 
 /// Two positions are equal if they differ by less than this fraction of the smaller element.
@@ -71,9 +72,9 @@ pub struct BodyInterface {
     pub order: [usize; 2],
     /// The unit normal at each shared node, out of the first of `bodies`.
     pub normals: Vec<[f64; 3]>,
-    /// The entry that names the sides, by number (ties before contacts): the bodies then need not touch, and no other
-    /// entry applies. `None`: bodies that touch.
-    pub entry: Option<usize>,
+    /// The entry that names the sides: the bodies then need not touch, and no other entry applies. `None`: bodies that
+    /// touch.
+    pub entry: Option<EntryId>,
     /// The distance of the two nodes along the normal; zero where they coincide.
     pub distances: Vec<f64>,
     /// The lengths that `adjust` adds to the distances at nodes of `shared` that count as touching, by the nodes'

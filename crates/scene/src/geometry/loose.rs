@@ -10,7 +10,7 @@ use std::sync::Arc;
 use super::interface::BodyInterface;
 use super::mortar::surface;
 use crate::body::Body;
-use crate::rows::equations::Equation;
+use crate::rows::row::Row;
 use base::linalg::vec3::{minus, norm};
 use elements::form::Form;
 use elements::mortar::{self, MortarSide, Tree};
@@ -39,11 +39,11 @@ pub(crate) enum Language {
 pub(crate) fn sentences(
     bodies: &[Body],
     interfaces: &[BodyInterface],
-    equations: &[Equation],
+    rows: &[Row],
     form: &Form,
     language: Language,
 ) -> Vec<String> {
-    let joined = joined(bodies, interfaces, equations);
+    let joined = joined(bodies, interfaces, rows);
     let mut skins: HashMap<usize, Skin> = HashMap::new();
     let mut out = Vec::new();
     let mut more = 0;
@@ -73,13 +73,9 @@ pub(crate) fn sentences(
 }
 
 /// The pairs of bodies that something joins.
-fn joined(
-    bodies: &[Body],
-    interfaces: &[BodyInterface],
-    equations: &[Equation],
-) -> HashSet<[usize; 2]> {
+fn joined(bodies: &[Body], interfaces: &[BodyInterface], rows: &[Row]) -> HashSet<[usize; 2]> {
     let mut out: HashSet<[usize; 2]> = interfaces.iter().map(|i| i.bodies).collect();
-    for equation in equations {
+    for equation in rows.iter().filter_map(|row| row.combination.as_ref()) {
         let of = |dof: u64| bodies.partition_point(|b| b.first_dof <= dof) - 1;
         let mut all: Vec<usize> = equation.terms.iter().map(|t| of(t.0)).collect();
         all.sort_unstable();

@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod cells;
+pub mod entry;
 pub mod expr;
 pub mod field;
 pub mod grid;

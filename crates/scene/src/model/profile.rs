@@ -1,5 +1,6 @@
 //! Gaps and bounds along a face or a side.
 
+use super::entry::EntryId;
 use super::expr::{Expr, Variables};
 
 /// A function on a face or side.
@@ -46,8 +47,8 @@ pub struct Limit {
     pub node: usize,
     /// g without the factors of load steps.
     pub value: f64,
-    /// Number of its entry, contacts before obstacles; `None`: the default.
-    pub entry: Option<usize>,
+    /// Its entry; `None`: the default.
+    pub entry: Option<EntryId>,
 }
 
 impl Limits {

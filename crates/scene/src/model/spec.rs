@@ -2,6 +2,7 @@
 //! [`Scene::new`](crate::Scene::new) does that.
 
 use super::body::{BodySpec, Load};
+use super::entry::EntryId;
 use super::expr::Expr;
 use super::field::{Field, Region};
 use super::grid::GridSpec;
@@ -75,6 +76,16 @@ pub struct SceneSpec {
 }
 
 impl SceneSpec {
+    /// Where an entry was written.
+    pub(crate) fn location_of(&self, entry: EntryId) -> &Location {
+        match entry {
+            EntryId::Tie(k) => &self.ties[k].location,
+            EntryId::Contact(k) => &self.contacts[k].location,
+            EntryId::Obstacle(k) => &self.obstacles[k].location,
+            EntryId::Equation(k) => &self.equations[k].location,
+        }
+    }
+
     /// A scene whose bodies are tied wherever they touch.
     pub fn tied(title: impl Into<String>, bodies: Vec<BodySpec>) -> SceneSpec {
         SceneSpec {

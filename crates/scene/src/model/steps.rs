@@ -1,5 +1,6 @@
 //! Quasi-static load steps: the times t and the factors of loads, gaps and given values at each of them.
 
+use super::entry::EntryId;
 use super::profile::Limit;
 use super::ramp::Ramp;
 use super::spec::SceneSpec;
@@ -15,16 +16,16 @@ pub struct Steps {
     load: Ramp,
     gap: Ramp,
     dirichlet: Ramp,
-    /// The ramp of every entry, contacts before obstacles.
-    entries: Vec<Option<Ramp>>,
+    /// The ramps of the contacts, and of the obstacles.
+    contacts: Vec<Option<Ramp>>,
+    obstacles: Vec<Option<Ramp>>,
 }
 
 impl Steps {
     /// Takes the ramps of the entries of `spec` again, after entries for surfaces have become entries for bodies.
     pub(crate) fn renumber(&mut self, spec: &SceneSpec) {
-        let contacts = spec.contacts.iter().map(|c| c.ramp.clone());
-        let obstacles = spec.obstacles.iter().map(|o| o.ramp.clone());
-        self.entries = contacts.chain(obstacles).collect();
+        self.contacts = spec.contacts.iter().map(|c| c.ramp.clone()).collect();
+        self.obstacles = spec.obstacles.iter().map(|o| o.ramp.clone()).collect();
     }
 
     /// The steps of `spec`. Every factor is evaluated at every time.
@@ -32,8 +33,7 @@ impl Steps {
         let bodies = spec.bodies.iter().map(|b| (&b.ramp, &b.location));
         let contacts = spec.contacts.iter().map(|c| (&c.ramp, &c.location));
         let obstacles = spec.obstacles.iter().map(|o| (&o.ramp, &o.location));
-        let entries = contacts.chain(obstacles);
-        let ramps = bodies.chain(entries.clone());
+        let ramps = bodies.chain(contacts).chain(obstacles);
         let Some(steps) = &spec.steps else {
             let ramped = ramps.clone().find(|(ramp, _)| ramp.is_some());
             return match ramped {
@@ -78,14 +78,26 @@ impl Steps {
                 }
             }
         }
-        Ok(Some(Steps {
+        let mut checked = Steps {
             times: steps.times.clone(),
             update: steps.update,
             load: steps.load.clone(),
             gap: steps.gap.clone(),
             dirichlet: steps.dirichlet.clone(),
-            entries: entries.map(|(ramp, _)| ramp.clone()).collect(),
-        }))
+            contacts: Vec::new(),
+            obstacles: Vec::new(),
+        };
+        checked.renumber(spec);
+        Ok(Some(checked))
+    }
+
+    /// The ramp that an entry has for itself.
+    fn ramp(&self, entry: EntryId) -> Option<&Ramp> {
+        match entry {
+            EntryId::Contact(k) => self.contacts.get(k)?.as_ref(),
+            EntryId::Obstacle(k) => self.obstacles.get(k)?.as_ref(),
+            EntryId::Tie(_) | EntryId::Equation(_) => None,
+        }
     }
 }
 
@@ -148,7 +160,7 @@ impl<'a> Factors<'a> {
     pub fn tightest<'l>(
         &self,
         limits: impl IntoIterator<Item = &'l Limit>,
-    ) -> Option<(f64, Option<usize>)> {
+    ) -> Option<(f64, Option<EntryId>)> {
         limits
             .into_iter()
             .map(|l| (l.value * self.gap(l.entry), l.entry))
@@ -156,15 +168,15 @@ impl<'a> Factors<'a> {
     }
 
     /// The tightest of the bounds of an inequality; there must be at least one.
-    pub fn bound(&self, limits: &[Limit]) -> (f64, Option<usize>) {
+    pub fn bound(&self, limits: &[Limit]) -> (f64, Option<EntryId>) {
         self.tightest(limits)
             .expect("a row of an inequality has a bound")
     }
 
     /// The factor of the gaps of an entry.
-    pub fn gap(&self, entry: Option<usize>) -> f64 {
+    pub fn gap(&self, entry: Option<EntryId>) -> f64 {
         self.at.map_or(1.0, |(s, t)| {
-            let own = entry.and_then(|e| s.entries.get(e)?.as_ref());
+            let own = entry.and_then(|e| s.ramp(e));
             own.unwrap_or(&s.gap).at(t)
         })
     }

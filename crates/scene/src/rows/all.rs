@@ -1,11 +1,10 @@
 //! All rows of a scene: what its interfaces, obstacles and equations come to.
 
 use super::bounds::Checks;
-use super::equations::{Chain, Equation};
 use super::mortar;
-use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::InterfacePoint;
+use super::row::Row;
 use crate::body::Body;
 use crate::geometry::interface::BodyInterface;
 use crate::model::spec::SceneSpec;
@@ -15,11 +14,11 @@ use crate::rows::points;
 use base::Result;
 use std::collections::HashSet;
 
-/// The rows, and sentences about them.
+/// The rows with the points at which nodes meet, and sentences about them.
 pub(crate) struct SceneRows {
     pub points: Vec<InterfacePoint>,
-    pub mortar: Vec<MortarRow>,
-    pub equations: Vec<Equation>,
+    /// By point, then equations, then rows between sides whose nodes do not match.
+    pub rows: Vec<Row>,
     pub notes: Vec<String>,
 }
 
@@ -29,7 +28,7 @@ pub(crate) struct Joined<'a> {
     pub interfaces: &'a mut [BodyInterface],
     pub obstacles: &'a [Obstacle],
     /// Rows between sides whose nodes do not match that are known already.
-    pub known: Vec<MortarRow>,
+    pub known: Vec<Row>,
     /// The subdomains at whose points rows are wanted. All are, where rows lead from point to point: where there are
     /// equations, or sides whose nodes do not match.
     pub owns: &'a dyn Fn(usize) -> bool,
@@ -55,15 +54,17 @@ impl Joined<'_> {
         let near =
             |(b, body): (usize, &Body)| beside.contains(&b) || body.subdomains().any(self.owns);
         let near: Vec<bool> = bodies.iter().enumerate().map(near).collect();
-        let mut points = points::collect(bodies, self.interfaces, &|b| near[b], &wanted)?;
+        let found = points::collect(bodies, self.interfaces, &|b| near[b], &wanted)?;
+        let (mut points, mut rows) = found;
         let mut checks = Checks::new(bodies, self.obstacles, spec, steps);
         if let Some(step) = step {
             checks.factors = vec![Factors::of(steps, step)?];
         }
-        checks.apply(&mut points)?;
+        checks.apply(&mut points, &mut rows)?;
         points.retain(|p| (self.owns)(p.subdomain));
         points.shrink_to_fit();
-        let (mut mortar, notes) = mortar::collect(
+        rows.retain(|row| (self.owns)(row.subdomain));
+        let (mortar, notes) = mortar::collect(
             bodies,
             &spec.form,
             self.interfaces,
@@ -71,23 +72,14 @@ impl Joined<'_> {
             &checks,
             self.known,
         )?;
-        let mut equations = equations::collect(bodies, &spec.equations)?;
-        let of_equations = equations.iter_mut().map(|e| Chain {
-            terms: &e.terms,
-            block: &mut e.block,
-            subdomain: &mut e.subdomain,
-        });
-        let of_mortar = mortar.iter_mut().map(|m| Chain {
-            terms: &m.terms,
-            block: &mut m.block,
-            subdomain: &mut m.subdomain,
-        });
-        let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
-        equations::join(bodies, &mut points, &mut chains);
+        let mut chained = equations::collect(bodies, &spec.equations)?;
+        chained.extend(mortar);
+        equations::join(bodies, &mut points, &mut rows, &mut chained);
+        rows.extend(chained);
+        rows.shrink_to_fit();
         Ok(SceneRows {
             points,
-            mortar,
-            equations,
+            rows,
             notes,
         })
     }

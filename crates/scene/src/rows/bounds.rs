@@ -1,10 +1,11 @@
 //! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
 
 use super::entry::both;
-use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
-use super::points::{Inequality, InterfacePoint, PointRow};
+use super::points::InterfacePoint;
+use super::row::{Bound, Row};
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::profile::Limit;
 use crate::model::spec::SceneSpec;
 use crate::model::steps::{Factors, Steps};
@@ -19,14 +20,13 @@ use std::collections::HashMap;
 pub(crate) struct Checks<'a> {
     pub bodies: &'a [Body],
     pub obstacles: &'a [Obstacle],
-    /// Where every contact and obstacle was written, by number of its entry.
-    pub locations: Vec<&'a Location>,
+    pub spec: &'a SceneSpec,
     /// The factors of every load step.
     pub factors: Vec<Factors<'a>>,
 }
 
-/// The tightest bound at one step, and the number of the entry that it comes from.
-type Tightest = (f64, Option<usize>);
+/// The tightest bound at one step, and the entry that it comes from.
+type Tightest = (f64, Option<EntryId>);
 
 impl<'a> Checks<'a> {
     /// The checks of a scene.
@@ -36,12 +36,10 @@ impl<'a> Checks<'a> {
         spec: &'a SceneSpec,
         steps: &'a Option<Steps>,
     ) -> Checks<'a> {
-        let contacts = spec.contacts.iter().map(|c| &c.location);
-        let rest = spec.obstacles.iter().map(|o| &o.location);
         Checks {
             bodies,
             obstacles,
-            locations: contacts.chain(rest).collect(),
+            spec,
             factors: Factors::every(steps),
         }
     }
@@ -51,37 +49,41 @@ impl<'a> Checks<'a> {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) if ties or given values violate an inequality, or if two bounds
     /// contradict each other.
-    pub fn apply(&self, points: &mut Vec<InterfacePoint>) -> Result<()> {
-        for point in points.iter_mut() {
-            let mut rows = std::mem::take(&mut point.rows);
-            let mut decided = Vec::with_capacity(rows.len());
-            for row in &mut rows {
-                decided.push(self.is_decided(point, row)?);
+    pub fn apply(&self, points: &mut Vec<InterfacePoint>, rows: &mut Vec<Row>) -> Result<()> {
+        let mut decided = Vec::with_capacity(rows.len());
+        let mut at = 0;
+        for row in rows.iter_mut() {
+            // Rows are in the order of points.
+            while points[at].block != row.block {
+                at += 1;
             }
-            let mut decided = decided.into_iter();
-            rows.retain(|_| decided.next() == Some(false));
-            point.rows = rows;
+            decided.push(self.is_decided(&points[at], row)?);
         }
-        self.add_bounds(points)?;
-        for point in points.iter() {
-            self.check_between(point)?;
+        let mut decided = decided.into_iter();
+        rows.retain(|_| decided.next() == Some(false));
+        let beside = self.beside_obstacles(points)?;
+        self.check_between(&beside)?;
+        if !beside.is_empty() {
+            // At a point, pairs come before obstacles.
+            rows.extend(beside);
+            rows.sort_by_key(|row| row.block);
         }
         Ok(())
     }
 
     /// Whether ties or given values decide a row. Stores the given values on both sides of a contact.
-    fn is_decided(&self, point: &InterfacePoint, row: &mut PointRow) -> Result<bool> {
-        let (Some(inequality), [Some(a), Some(b)]) = (&mut row.inequality, row.members) else {
+    fn is_decided(&self, point: &InterfacePoint, row: &mut Row) -> Result<bool> {
+        let (Some(bound), [Some(a), Some(b)]) = (&mut row.bound, row.members) else {
             return Ok(false);
         };
-        let members = [a, b].map(|m| point.members[m]);
+        let members = [a, b];
         let sides = members.map(|m| m.along(self.bodies, row.direction));
-        inequality.given = [0, 1].map(|k| sides[k].given);
+        bound.given = [0, 1].map(|k| sides[k].given);
         let fixed = sides.iter().all(|s| s.terms.is_empty());
-        let tied = point.tied_to[a] == point.tied_to[b];
+        let tied = point.ties(members);
         for factors in &self.factors {
-            let (gap, entry) = self.finite(factors, &inequality.limits, members[0])?;
-            let gap = gap + inequality.distance;
+            let (gap, entry) = self.finite(factors, &bound.limits, members[0])?;
+            let gap = gap + bound.value;
             let fail = |why: String| {
                 let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
                 let at = members[0].spot(self.bodies);
@@ -94,7 +96,7 @@ impl<'a> Checks<'a> {
                 )))
             };
             if fixed {
-                let [v, w] = inequality.given.map(|given| given * factors.dirichlet());
+                let [v, w] = bound.given.map(|given| given * factors.dirichlet());
                 if exceeds(v - w, gap) {
                     return fail(format!("have the given values {v} and {w}"));
                 }
@@ -106,12 +108,12 @@ impl<'a> Checks<'a> {
     }
 
     /// Whether given values decide a row between sides whose nodes do not match.
-    pub fn is_decided_mortar(&self, row: &MortarRow) -> Result<bool> {
+    pub fn is_decided_mortar(&self, row: &Row) -> Result<bool> {
         let first = row.members[0].expect("every row has a first member");
-        if !row.terms.is_empty() {
-            if let Some(inequality) = &row.inequality {
+        if !row.terms(self.bodies).is_empty() {
+            if row.law.is_inequality() {
                 for factors in &self.factors {
-                    self.finite(factors, &inequality.limits, first)?;
+                    self.finite(factors, row.limits(), first)?;
                 }
             }
             return Ok(false);
@@ -127,9 +129,10 @@ impl<'a> Checks<'a> {
         let at = first.spot(self.bodies);
         for factors in &self.factors {
             let c = row.right_hand_side(factors);
-            let wrong = match row.inequality {
-                Some(_) => exceeds(0.0, c),
-                None => !agree(c, 0.0),
+            let wrong = if row.law.is_inequality() {
+                exceeds(0.0, c)
+            } else {
+                !agree(c, 0.0)
             };
             if wrong {
                 return Err(Error::input(format!(
@@ -164,21 +167,22 @@ impl<'a> Checks<'a> {
     }
 
     /// The place for messages: the entry, or the body if the default made the contact.
-    fn place(&self, entry: Option<usize>, member: BodyNode) -> &Location {
-        let location = entry.and_then(|e| self.locations.get(e).copied());
+    fn place(&self, entry: Option<EntryId>, member: BodyNode) -> &Location {
+        let location = entry.map(|e| self.spec.location_of(e));
         location.unwrap_or(&self.bodies[member.body].spec.location)
     }
 
-    /// Adds a row at every free node beside an obstacle, in a new point if the node has none yet.
-    fn add_bounds(&self, points: &mut Vec<InterfacePoint>) -> Result<()> {
+    /// The rows at free nodes beside obstacles, by point. A node that has no point yet gets one.
+    fn beside_obstacles(&self, points: &mut Vec<InterfacePoint>) -> Result<Vec<Row>> {
+        let mut rows: Vec<Row> = Vec::new();
         if self.obstacles.is_empty() {
-            return Ok(());
+            return Ok(rows);
         }
-        let mut index: HashMap<BodyNode, (usize, usize)> = HashMap::new();
+        let mut place: HashMap<BodyNode, usize> = HashMap::new();
         for (p, point) in points.iter().enumerate() {
-            let members = point.members.iter().enumerate();
-            index.extend(members.map(|(m, member)| (*member, (p, m))));
+            place.extend(point.members.iter().map(|member| (*member, p)));
         }
+        let mut at_node: HashMap<BodyNode, Vec<usize>> = HashMap::new();
         for (o, obstacle) in self.obstacles.iter().enumerate() {
             let body = obstacle.body;
             for same in obstacle.limits.all().chunk_by(|a, b| a.node == b.node) {
@@ -193,52 +197,47 @@ impl<'a> Checks<'a> {
                 if obstacle.surface.is_some() {
                     continue;
                 }
-                let &mut (p, m) = index.entry(member).or_insert_with(|| {
-                    points.push(InterfacePoint::of(vec![member], self.bodies));
-                    (points.len() - 1, 0)
-                });
-                let rows = &mut points[p].rows;
                 // Sides of a body that meet at a corner or edge share a row there.
-                let before = rows.iter_mut().find(|row| {
-                    let other = self.obstacle(row);
-                    row.members[0] == Some(m)
-                        && other
-                            .is_some_and(|o| (o.upper, o.rigid) == (obstacle.upper, obstacle.rigid))
+                let known = at_node.entry(member).or_default();
+                let before = known.iter().find(|&&k| {
+                    let other = self.obstacle(&rows[k]);
+                    other.is_some_and(|o| (o.upper, o.rigid) == (obstacle.upper, obstacle.rigid))
                 });
-                match before.and_then(|row| row.inequality.as_mut()) {
-                    Some(inequality) => inequality.limits.extend(same),
-                    None => rows.push(PointRow {
-                        members: [Some(m), None],
-                        direction,
-                        holds: true,
-                        inequality: Some(Box::new(Inequality {
-                            limits: same.to_vec(),
-                            distance,
-                            given: [side.given, 0.0],
-                        })),
-                        source: RowSource::Obstacle(o),
-                        node,
-                    }),
+                if let Some(bound) = before.and_then(|&k| rows[k].bound.as_mut()) {
+                    bound.limits.extend(same);
+                    continue;
                 }
+                let p = place.entry(member).or_insert_with(|| {
+                    points.push(InterfacePoint::of(vec![member], self.bodies));
+                    points.len() - 1
+                });
+                known.push(rows.len());
+                let place = (points[*p].block, points[*p].subdomain);
+                let source = RowSource::Obstacle(o);
+                let row = Row::tie(source, node, [Some(member), None], direction, place);
+                rows.push(row.in_contact(Bound {
+                    limits: same.to_vec(),
+                    value: distance,
+                    given: [side.given, 0.0],
+                }));
             }
         }
-        for point in points.iter_mut() {
-            let first = point.rows.iter().position(PointRow::is_beside_obstacle);
-            let Some(first) = first else { continue };
-            let bounds = &mut point.rows[first..];
-            bounds.sort_by_key(|row| (row.members[0], self.obstacle(row).map(|o| o.upper)));
-            for k in 1..bounds.len() {
-                let same = bounds[k].members[0] == bounds[k - 1].members[0];
-                let rigid = self.obstacle(&bounds[k]).is_some_and(|o| o.rigid.is_some());
-                bounds[k].holds = rigid || !same;
-            }
+        let order = |row: &Row| {
+            let member = row.members[0].map(|m| (m.body, m.node));
+            (row.block, member, self.obstacle(row).map(|o| o.upper))
+        };
+        rows.sort_by_key(order);
+        for k in 1..rows.len() {
+            let same = rows[k].members[0] == rows[k - 1].members[0];
+            let rigid = self.obstacle(&rows[k]).is_some_and(|o| o.rigid.is_some());
+            rows[k].holds = rigid || !same;
         }
         points.sort_by_key(|p| p.block);
-        Ok(())
+        Ok(rows)
     }
 
     /// The obstacle that a row comes from.
-    fn obstacle(&self, row: &PointRow) -> Option<&'a Obstacle> {
+    fn obstacle(&self, row: &Row) -> Option<&'a Obstacle> {
         match row.source {
             RowSource::Obstacle(o) => Some(&self.obstacles[o]),
             RowSource::Interface(_) | RowSource::Equation(_) => None,
@@ -282,14 +281,14 @@ impl<'a> Checks<'a> {
         Ok(())
     }
 
-    /// Checks that the lower bound of a node does not lie above its upper bound.
-    fn check_between(&self, point: &InterfacePoint) -> Result<()> {
-        let mut below: Option<&PointRow> = None;
-        for row in &point.rows {
-            let (Some(obstacle), [Some(m), _]) = (self.obstacle(row), row.members) else {
+    /// Checks of rows beside obstacles that the lower bound of a node does not lie above its upper bound.
+    fn check_between(&self, rows: &[Row]) -> Result<()> {
+        let mut below: Option<&Row> = None;
+        for row in rows {
+            let (Some(obstacle), [Some(member), _]) = (self.obstacle(row), row.members) else {
                 continue;
             };
-            let (member, limits) = (point.members[m], &row.limits());
+            let limits = row.limits();
             let partner =
                 below.filter(|other| other.members == row.members && obstacle.rigid.is_none());
             for factors in &self.factors {

@@ -1,6 +1,6 @@
 //! The joints between touching bodies: the default, and the entries of [[tie]] and [[contact]].
 
-use super::entry::{both, some_names, ContactData, Entry};
+use super::entry::{both, some_names, Entry};
 use super::facing::facing;
 use super::left_out::LeftOut;
 use super::links::Links;
@@ -71,11 +71,9 @@ fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
         pair: &PairSelector::All,
         extent: &Extent::All,
         location: None,
-        contact: (spec.default == ByDefault::Contact).then_some(ContactData {
-            gap: zero,
-            number: None,
-        }),
-        own: None,
+        gap: (spec.default == ByDefault::Contact).then_some(zero),
+        id: None,
+        names_sides: false,
     };
     (spec.default != ByDefault::Free).then_some(default)
 }
@@ -132,7 +130,7 @@ impl<'a> Entries<'a> {
             moved: false,
         };
         let contacts = contacts.iter().enumerate();
-        let contacts = contacts.map(|(number, spec)| Entry::contact(ties.len(), number, spec));
+        let contacts = contacts.map(|(number, spec)| Entry::contact(number, spec));
         let ties = ties.iter().enumerate().map(|(k, spec)| Entry::tie(k, spec));
         for entry in ties.chain(contacts) {
             let (first, second) = match entry.pair {
@@ -155,7 +153,7 @@ impl<'a> Entries<'a> {
                 })
             };
             let (a, b) = (find(first)?, find(second)?);
-            if a == b && entry.own.is_none() {
+            if a == b && !entry.names_sides {
                 return Err(Error::input(format!(
                     "a {} names body `{first}` twice where two bodies were expected (or `sides`, two sides of it)",
                     entry.what()
@@ -172,7 +170,7 @@ impl<'a> Entries<'a> {
     /// Whether a tie names the pair.
     fn tie_names(&self, pair: [usize; 2]) -> bool {
         let named = self.named.get(&pair).into_iter().flatten();
-        named.into_iter().any(|(e, _)| e.contact.is_none())
+        named.into_iter().any(|(e, _)| !e.is_contact())
     }
 
     /// Sets the links of one interface. Entries replace the default and add up. Entries that name the pair override
@@ -185,24 +183,27 @@ impl<'a> Entries<'a> {
         last: Factors<'_>,
     ) -> Result<()> {
         let named = self.named.get(&interface.bodies).into_iter().flatten();
-        let named = named.filter(|(e, _)| e.own.is_none() || e.own == interface.entry);
+        let named = named.filter(|(e, _)| !e.names_sides || e.id == interface.entry);
         let named: Vec<(Entry<'_>, [usize; 2])> = named.copied().collect();
-        let contact_named = named.iter().any(|(e, _)| e.contact.is_some());
+        let contact_named = named.iter().any(|(e, _)| e.is_contact());
         let mut links = Links::new(bodies, interface);
-        let speaks = |e: &Entry<'_>| match e.contact {
-            None => !contact_named,
-            Some(_) => named.is_empty(),
+        let speaks = |e: &Entry<'_>| {
+            if e.is_contact() {
+                named.is_empty()
+            } else {
+                !contact_named
+            }
         };
         // Ties come first: contacts need to know which nodes are tied.
         for contact in [false, true] {
             for (entry, used) in &mut self.all {
-                if entry.contact.is_some() == contact {
+                if entry.is_contact() == contact {
                     // An entry that is overridden everywhere is no mistake.
                     *used |= !speaks(entry) || links.add(*entry, None)? > 0;
                 }
             }
             for (entry, order) in &named {
-                if entry.contact.is_some() == contact {
+                if entry.is_contact() == contact {
                     let selected = links.add(*entry, Some(*order))?;
                     if selected == 0 && *entry.extent != Extent::None && !self.moved {
                         let [a, b] = links.names();

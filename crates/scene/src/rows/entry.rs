@@ -1,6 +1,7 @@
 //! An entry of [[tie]] or [[contact]], and its name in messages.
 
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use base::Location;
@@ -11,18 +12,12 @@ pub(crate) struct Entry<'a> {
     pub pair: &'a PairSelector,
     pub extent: &'a Extent,
     pub location: Option<&'a Location>,
-    /// The data of a contact; `None`: a tie.
-    pub contact: Option<ContactData<'a>>,
-    /// Its number, ties before contacts, if it names the sides: it applies to the interface of these sides only.
-    pub own: Option<usize>,
-}
-
-/// The data of a contact beyond its nodes.
-#[derive(Clone, Copy)]
-pub(crate) struct ContactData<'a> {
-    pub gap: &'a Profile,
-    /// Number of the entry, `None` for the default.
-    pub number: Option<usize>,
+    /// The gap of a contact; `None`: a tie.
+    pub gap: Option<&'a Profile>,
+    /// Which one it is, `None` for the default.
+    pub id: Option<EntryId>,
+    /// Whether it names the sides: it applies to the interface of these sides only.
+    pub names_sides: bool,
 }
 
 impl<'a> Entry<'a> {
@@ -31,37 +26,43 @@ impl<'a> Entry<'a> {
             pair: &spec.pair,
             extent: &spec.extent,
             location: Some(&spec.location),
-            contact: None,
-            own: spec.sides.map(|_| number),
+            gap: None,
+            id: Some(EntryId::Tie(number)),
+            names_sides: spec.sides.is_some(),
         }
     }
 
-    /// Contact `number`, after `ties` ties.
-    pub fn contact(ties: usize, number: usize, spec: &'a ContactSpec) -> Entry<'a> {
+    pub fn contact(number: usize, spec: &'a ContactSpec) -> Entry<'a> {
         Entry {
             pair: &spec.pair,
             extent: &spec.extent,
             location: Some(&spec.location),
-            contact: Some(ContactData {
-                gap: &spec.gap,
-                number: Some(number),
-            }),
-            own: spec.sides.map(|_| ties + number),
+            gap: Some(&spec.gap),
+            id: Some(EntryId::Contact(number)),
+            names_sides: spec.sides.is_some(),
         }
+    }
+
+    /// Whether it is a contact, and no tie.
+    pub fn is_contact(&self) -> bool {
+        self.gap.is_some()
     }
 
     /// "tie" or "contact".
     pub fn what(&self) -> &'static str {
-        match self.contact {
-            None => "tie",
-            Some(_) => "contact",
+        if self.is_contact() {
+            "contact"
+        } else {
+            "tie"
         }
     }
 
-    /// The place where it was written, for the middle of a sentence.
-    pub fn line(&self) -> String {
-        let place = self.location.and_then(Location::place);
-        place.unwrap_or_else(|| "another entry".into())
+    /// Its name for the middle of a sentence.
+    pub fn named(&self) -> String {
+        match self.id {
+            Some(id) => id.named(self.location),
+            None => format!("the {} by default", self.what()),
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::geometry::interface::BodyInterface;
 use crate::geometry::matching::{apart, Mismatch, NodeMatching};
 use crate::geometry::single::{has_lonely_nodes, ReachedNodes};
 use crate::geometry::{mortar, overlap};
+use crate::model::entry::EntryId;
 use crate::model::joints::{Extent, PairSelector};
 use crate::model::spec::SceneSpec;
 use base::{Error, Location, Result};
@@ -13,14 +14,16 @@ use fetifeti::problem::BodyNode;
 use std::collections::{HashMap, HashSet};
 
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair. Of ties with a
-/// tolerance, by number, the nodes that lie farther away are returned.
+/// tolerance the nodes that lie farther away are returned.
 pub(super) fn facing(
     bodies: &[Body],
     mut matching: NodeMatching<'_>,
     spec: &SceneSpec,
     interfaces: &mut Vec<BodyInterface>,
-) -> Result<Vec<(usize, Vec<BodyNode>)>> {
-    let ties = spec.ties.iter().map(|t| SideEntry {
+) -> Result<Vec<(EntryId, Vec<BodyNode>)>> {
+    let ties = spec.ties.iter().enumerate();
+    let ties = ties.map(|(k, t)| SideEntry {
+        id: EntryId::Tie(k),
         sides: t.sides,
         pair: &t.pair,
         which: t.multipliers.unwrap_or(0),
@@ -29,7 +32,9 @@ pub(super) fn facing(
         extent: &t.extent,
         location: &t.location,
     });
-    let contacts = spec.contacts.iter().map(|c| SideEntry {
+    let contacts = spec.contacts.iter().enumerate();
+    let contacts = contacts.map(|(k, c)| SideEntry {
+        id: EntryId::Contact(k),
         sides: c.sides,
         pair: &c.pair,
         which: c.multipliers.unwrap_or(0),
@@ -43,7 +48,7 @@ pub(super) fn facing(
         numbers.entry(body.spec.name.as_str()).or_insert(k);
     }
     let mut far = Vec::new();
-    for (number, entry) in ties.chain(contacts).enumerate() {
+    for entry in ties.chain(contacts) {
         let (Some(sides), PairSelector::Named(first, second)) = (entry.sides, entry.pair) else {
             continue;
         };
@@ -64,7 +69,7 @@ pub(super) fn facing(
         } else {
             ([b, a], [sides[1], sides[0]], 1 - entry.which)
         };
-        let is_contact = number >= spec.ties.len();
+        let is_contact = matches!(entry.id, EntryId::Contact(_));
         let matched = entry.matched(bodies, &mut matching, pair, sides);
         let mut interface = match *entry.extent {
             Extent::Within { distance, .. } if !is_contact => {
@@ -73,7 +78,7 @@ pub(super) fn facing(
                     body: pair[which],
                     node,
                 };
-                far.push((number, reached.far.iter().map(of).collect()));
+                far.push((entry.id, reached.far.iter().map(of).collect()));
                 entry.within(
                     bodies,
                     &mut matching,
@@ -114,7 +119,7 @@ pub(super) fn facing(
         if let Some(why) = overlap::too_large(bodies, &interface) {
             return entry.error(&why);
         }
-        interface.entry = Some(number);
+        interface.entry = Some(entry.id);
         interfaces.push(interface);
     }
     let of_entries = interfaces.iter().filter(|i| i.entry.is_some());
@@ -126,6 +131,7 @@ pub(super) fn facing(
 
 /// An entry that may name sides.
 struct SideEntry<'s> {
+    id: EntryId,
     sides: Option<[usize; 2]>,
     pair: &'s PairSelector,
     /// Which of its two bodies carries the multipliers.

@@ -4,9 +4,8 @@ use crate::rows::at_node::AtNode;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
-use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
-use super::points::Inequality;
+use super::row::{Bound, Combination, Row};
 use crate::body::Body;
 use crate::geometry::mortar::surface;
 use crate::geometry::mortar_sides::{BodyRow, Surfaces};
@@ -207,7 +206,7 @@ impl Obstacle {
         form: &Form,
         number: usize,
         taken: &dyn Fn(BodyNode, [f64; 3]) -> bool,
-    ) -> Vec<MortarRow> {
+    ) -> Vec<Row> {
         let Some(opposite) = &self.surface else {
             return Vec::new();
         };
@@ -241,23 +240,23 @@ impl Obstacle {
                 terms.extend(along.terms.into_iter().map(|(dof, n)| (dof, v * n)));
                 given += v * along.given;
             }
-            MortarRow {
-                source: RowSource::Obstacle(number),
-                node,
-                members: [Some(node_of(node)), None],
-                direction,
-                block: terms.iter().map(|t| t.0).min().unwrap_or_default(),
-                subdomain: bodies[body].first_subdomain + bodies[body].mesh().owner(node),
+            let place = (
+                terms.iter().map(|t| t.0).min().unwrap_or_default(),
+                bodies[body].first_subdomain + bodies[body].mesh().owner(node),
+            );
+            let source = RowSource::Obstacle(number);
+            let tie = Row::tie(source, node, [Some(node_of(node)), None], direction, place);
+            let in_contact = tie.in_contact(Bound {
+                limits: self.limits.at(node).to_vec(),
+                value: distance,
+                given: [given, 0.0],
+            });
+            in_contact.with_terms(Combination {
                 terms,
-                given,
-                inequality: Some(Box::new(Inequality {
-                    limits: self.limits.at(node).to_vec(),
-                    distance,
-                    given: [given, 0.0],
-                })),
-                area: row.area,
                 weights: [row.own, Vec::new()],
-            }
+                area: row.area,
+                ..Combination::default()
+            })
         };
         surfaces.rows(form, &held).into_iter().map(row).collect()
     }

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::origin::SideOrigin;
 use crate::body::Body;
 use crate::geometry::interface::BodyInterface;
+use crate::model::entry::EntryId;
 use fetifeti::problem::BodyNode;
 
 /// Entries that have a sentence of their own.
@@ -19,19 +20,19 @@ pub(crate) struct LeftOut {
     pub asides: Vec<String>,
 }
 
-/// A sentence for each entry that leaves something out. `far` has, by number of ties, the nodes that lie opposite the
+/// A sentence for each entry that leaves something out. `far` has, by ties, the nodes that lie opposite the
 /// other side but farther than the tolerance.
 pub(super) fn sentences(
     bodies: &[Body],
     origins: &[SideOrigin],
     interfaces: &[BodyInterface],
-    far: &[(usize, Vec<BodyNode>)],
+    far: &[(EntryId, Vec<BodyNode>)],
 ) -> LeftOut {
     let mut out = LeftOut::default();
     if origins.is_empty() {
         return out;
     }
-    let mut of_entry: HashMap<usize, Vec<&BodyInterface>> = HashMap::new();
+    let mut of_entry: HashMap<EntryId, Vec<&BodyInterface>> = HashMap::new();
     for interface in interfaces {
         let Some(entry) = interface.entry else {
             continue;
@@ -39,8 +40,9 @@ pub(super) fn sentences(
         of_entry.entry(entry).or_default().push(interface);
     }
     let of_origin = |origin: &SideOrigin| -> Vec<&BodyInterface> {
-        let own = origin.entries.clone();
-        let own = own.flat_map(|entry| of_entry.get(&entry).into_iter().flatten());
+        let own = origin
+            .ids()
+            .flat_map(|entry| of_entry.get(&entry).into_iter().flatten());
         own.copied().collect()
     };
     for origin in origins {
@@ -69,7 +71,7 @@ fn nodes(
     bodies: &[Body],
     origin: &SideOrigin,
     interfaces: &[&BodyInterface],
-    far: &[(usize, Vec<BodyNode>)],
+    far: &[(EntryId, Vec<BodyNode>)],
     tolerance: f64,
 ) -> Option<String> {
     let mut held: HashSet<BodyNode> = HashSet::new();
@@ -91,7 +93,7 @@ fn nodes(
     if left.is_empty() {
         return None;
     }
-    let mine = |(entry, _): &&(usize, Vec<BodyNode>)| origin.entries.contains(entry);
+    let mine = |(entry, _): &&(EntryId, Vec<BodyNode>)| origin.ids().any(|id| id == *entry);
     let far: HashSet<&BodyNode> = far.iter().filter(mine).flat_map(|f| &f.1).collect();
     let far = left.iter().filter(|node| far.contains(*node)).count();
     let (own, other) = (&origin.names[origin.which], &origin.names[1 - origin.which]);

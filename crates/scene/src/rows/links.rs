@@ -1,11 +1,11 @@
 //! The links of one interface: the state of its nodes after all entries.
 
-use super::entry::{both, ContactData, Entry};
+use super::entry::{both, Entry};
 use super::select::{is_end, selected, Parameters};
 use crate::body::Body;
 use crate::geometry::interface::{BodyInterface, Link};
 use crate::model::joints::Extent;
-use crate::model::profile::{Limit, Limits};
+use crate::model::profile::{Limit, Limits, Profile};
 use crate::model::steps::Factors;
 use crate::quantity::unfit_length;
 use base::{Error, Result};
@@ -46,7 +46,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
     pub fn add(&mut self, entry: Entry<'e>, order: Option<[usize; 2]>) -> Result<usize> {
         self.entries += 1;
         let nodes = selected(self.bodies, self.interface, &entry)?;
-        let Some(contact) = entry.contact else {
+        let Some(gap) = entry.gap else {
             if *entry.extent != Extent::None {
                 // The rest of a face that is tied in part is a candidate for contact: [Lee]'s Γ_gl around his Γ_gl^k.
                 let shared = self.interface.shared.iter_mut();
@@ -76,19 +76,19 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
                 let [a, b] = self.names();
                 return Err(Error::input(format!(
                     "the contact of {} selects the node at t = {}, \
-                     which the tie of {} selects too \
+                     which {} selects too \
                      (ranges that share no more than their ends were expected)",
                     both(a, b),
                     Parameters(t),
-                    tie.line()
+                    tie.named()
                 ))
                 .at(entry.location));
             }
-            let value = self.gap(&entry, contact, k)?;
+            let value = self.gap(&entry, gap, k)?;
             self.limits.push(Limit {
                 node: k,
                 value,
-                entry: contact.number,
+                entry: entry.id,
             });
         }
         Ok(nodes.len())
@@ -102,9 +102,9 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             Some((other, known)) if *known != order => {
                 let [a, b] = order.map(|k| &self.bodies[k].spec.name);
                 return Err(Error::input(format!(
-                    "the contact names bodies `{a}` and `{b}` in the other order than the contact of {} (the second \
+                    "the contact names bodies `{a}` and `{b}` in the other order than {} (the second \
                      body lies above the first, one order for a pair was expected)",
-                    other.line()
+                    other.named()
                 ))
                 .at(entry.location));
             }
@@ -116,7 +116,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         Ok(())
     }
 
-    fn gap(&self, entry: &Entry<'_>, contact: ContactData<'_>, k: usize) -> Result<f64> {
+    fn gap(&self, entry: &Entry<'_>, gap: &Profile, k: usize) -> Result<f64> {
         let BodyInterface {
             bodies,
             shared,
@@ -126,7 +126,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         let node = shared[k];
         let body = &self.bodies[bodies[order[0]]];
         let at = node.nodes[order[0]];
-        let value = contact.gap.eval(node.t[0], &body.spec.variables(at));
+        let value = gap.eval(node.t[0], &body.spec.variables(at));
         let Some(expected) = unfit_length(value) else {
             return Ok(value);
         };

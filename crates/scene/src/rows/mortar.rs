@@ -4,11 +4,12 @@ use crate::rows::at_node::AtNode;
 use std::collections::{HashMap, HashSet};
 
 use super::bounds::Checks;
-use super::mortar_row::MortarRow;
-use super::points::{Inequality, InterfacePoint};
+use super::points::InterfacePoint;
+use super::row::{Bound, Combination, Row};
 use crate::body::Body;
 use crate::geometry::interface::{BodyInterface, Link};
 use crate::geometry::mortar_sides::{BodyRow, Surfaces};
+use crate::model::entry::EntryId;
 use base::linalg::vec3::dot;
 use base::Result;
 use elements::form::Form;
@@ -22,11 +23,11 @@ pub(crate) fn collect(
     interfaces: &mut [BodyInterface],
     points: &[InterfacePoint],
     checks: &Checks<'_>,
-    known: Vec<MortarRow>,
-) -> Result<(Vec<MortarRow>, Vec<String>)> {
+    known: Vec<Row>,
+) -> Result<(Vec<Row>, Vec<String>)> {
     let mut tied = tied_at(points);
     let mut masters = Masters::default();
-    let equations = known.iter().filter(|row| row.inequality.is_none());
+    let equations = known.iter().filter(|row| !row.law.is_inequality());
     tied.extend(equations.filter_map(|row| {
         let RowSource::Interface(k) = row.source else {
             return None;
@@ -79,10 +80,10 @@ pub(crate) fn collect(
             }
         }
     }
-    let mut known: HashMap<(Option<usize>, BodyNode), Vec<[f64; 3]>> = HashMap::new();
+    let mut known: HashMap<(Option<EntryId>, BodyNode), Vec<[f64; 3]>> = HashMap::new();
     for (k, obstacle) in checks.obstacles.iter().enumerate() {
         // Sides of one body that go on smoothly share a row at their common nodes.
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
+        let entry = obstacle.entry();
         let taken = |node: BodyNode, direction: [f64; 3]| {
             let before = known.get(&(entry, node)).into_iter().flatten();
             tied.contains(&node) || before.into_iter().any(|d| dot(*d, direction) > SMOOTH)
@@ -130,7 +131,7 @@ const SMOOTH: f64 = 0.8;
 
 /// A row, the node that carries its multiplier, the nodes opposite it, and the distance of the sides there.
 struct Carried {
-    row: MortarRow,
+    row: Row,
     carrier: BodyNode,
     opposite: Vec<BodyNode>,
     distance: f64,
@@ -312,13 +313,17 @@ impl<'a> Pairing<'a> {
             let body = &self.bodies[m.body];
             body.first_subdomain + body.mesh().owner(m.node)
         });
-        let inequality = distance.map(|distance| {
-            Box::new(Inequality {
+        let place = (dofs.min().unwrap_or_default(), owners[0].min(owners[1]));
+        let source = RowSource::Interface(self.number);
+        let tie = Row::tie(source, i, members.map(Some), direction, place);
+        let joined = match distance {
+            None => tie.equal_to(0.0, given),
+            Some(value) => tie.in_contact(Bound {
                 limits: self.interface.limits.at(i).to_vec(),
-                distance,
+                value,
                 given,
-            })
-        });
+            }),
+        };
         let other = self.interface.bodies[1 - self.own];
         Carried {
             carrier: self.carrier(row.node),
@@ -328,19 +333,12 @@ impl<'a> Pairing<'a> {
                 .map(|&(node, _)| BodyNode { body: other, node })
                 .collect(),
             distance: distance.unwrap_or(self.interface.distances[i]),
-            row: MortarRow {
-                source: RowSource::Interface(self.number),
-                node: i,
-                members: members.map(Some),
-                direction,
-                block: dofs.min().unwrap_or_default(),
-                subdomain: owners[0].min(owners[1]),
+            row: joined.with_terms(Combination {
                 terms,
-                given: given[0] - given[1],
-                inequality,
-                area: row.area,
                 weights,
-            },
+                area: row.area,
+                ..Combination::default()
+            }),
         }
     }
 

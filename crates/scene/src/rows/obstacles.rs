@@ -6,6 +6,7 @@ use super::select::pick;
 use crate::body::Body;
 use crate::geometry::mortar::lacks_signs;
 use crate::geometry::normals::parameters;
+use crate::model::entry::EntryId;
 use crate::model::joints::{Extent, ObstacleSpec};
 use crate::model::profile::{Limit, Limits};
 use crate::model::rigid::Rigid;
@@ -33,9 +34,9 @@ pub struct Obstacle {
     /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
     /// In elasticity, in place of `rigid`, the part of the rigid body's surface that lies opposite the side: the rows
-    /// are those of [`Scene::mortar`].
+    /// are those of [`Scene::mortar_rows`].
     ///
-    /// [`Scene::mortar`]: crate::Scene::mortar
+    /// [`Scene::mortar_rows`]: crate::Scene::mortar_rows
     pub surface: Option<Opposite>,
     /// The way that the rigid body moves, without the factors of load steps.
     pub motion: [f64; 3],
@@ -69,31 +70,35 @@ impl<'a> Standing<'a> {
         }
     }
 
-    /// How far the obstacle of entry number `entry` has moved.
-    fn way(&self, spec: &ObstacleSpec, entry: usize) -> [f64; 3] {
+    /// How far the obstacle of an entry has moved.
+    fn way(&self, spec: &ObstacleSpec, entry: EntryId) -> [f64; 3] {
         let factor = self.factors.map_or(0.0, |f| f.gap(Some(entry)));
         spec.motion.map(|m| m * factor)
     }
 }
 
-/// The ways of nodes that count as touching, by number of the entry among the obstacles, body, side and node.
-pub(crate) type Adjusted = HashMap<(usize, usize, usize, usize), [f64; 3]>;
+/// The ways of nodes that count as touching, by entry, body, side and node.
+pub(crate) type Adjusted = HashMap<(EntryId, usize, usize, usize), [f64; 3]>;
 
-/// The ways of nodes that count as touching the obstacles of a scene; `first`: the number of the first obstacle entry.
-pub(crate) fn adjusted(obstacles: &[Obstacle], first: usize) -> Adjusted {
+/// The ways of nodes that count as touching the obstacles of a scene.
+pub(crate) fn adjusted(obstacles: &[Obstacle]) -> Adjusted {
     let mut out = Adjusted::new();
     for obstacle in obstacles {
-        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
-        let Some(k) = entry.and_then(|e| e.checked_sub(first)) else {
+        let Some(entry) = obstacle.entry() else {
             continue;
         };
         let nodes = obstacle.adjusted.iter();
-        out.extend(nodes.map(|(&node, &way)| ((k, obstacle.body, obstacle.side, node), way)));
+        out.extend(nodes.map(|(&node, &way)| ((entry, obstacle.body, obstacle.side, node), way)));
     }
     out
 }
 
 impl Obstacle {
+    /// Its entry; the first one, where several bound u itself.
+    pub(crate) fn entry(&self) -> Option<EntryId> {
+        self.limits.all().first().and_then(|l| l.entry)
+    }
+
     /// Parameters of one of the nodes along the side, 0 ≤ t ≤ 1.
     pub fn t(&self, node: usize) -> [f64; 2] {
         self.parameters.get(&node).copied().unwrap_or_default()
@@ -114,20 +119,19 @@ impl Obstacle {
     }
 }
 
-/// The obstacles of a scene, by body, side and bound, where they stand; `first` is the number of the first obstacle
-/// entry.
+/// The obstacles of a scene, by body, side and bound, where they stand.
 pub(crate) fn find_obstacles(
     bodies: &[Body],
     entries: &[ObstacleSpec],
     form: &Form,
-    first: usize,
     standing: Standing<'_>,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
-    let mut found: BTreeMap<(usize, usize, usize, bool), SideObstacleData> = BTreeMap::new();
+    let mut found: BTreeMap<ObstacleKey, SideObstacleData> = BTreeMap::new();
     // Bodies that have moved may have left an obstacle.
     let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
+        let id = EntryId::Obstacle(k);
         let fail = |message: String| Err(Error::input(message).at(&entry.location));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
         let elastic = entry.rigid.is_some() || entry.surface.is_some();
@@ -153,10 +157,10 @@ pub(crate) fn find_obstacles(
                 }
             },
         };
-        let number = if elastic { k + 1 } else { 0 };
+        let own = elastic.then_some(k);
         let mut missed = None;
         let before = found.len();
-        let way = standing.way(entry, first + k);
+        let way = standing.way(entry, id);
         for (b, &side) in chosen.flat_map(|b| entry.sides.iter().map(move |side| (b, side))) {
             let (mut selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
             let mut near = BTreeMap::new();
@@ -179,7 +183,7 @@ pub(crate) fn find_obstacles(
                     return fail(why);
                 }
                 selected.retain(|(node, _)| near.contains_key(node));
-                let of_side = found.entry((b, side, number, true)).or_default();
+                let of_side = found.entry((b, side, own, true)).or_default();
                 of_side.surface = Some(opposite);
             }
             if let Some(rigid) = &entry.rigid {
@@ -191,13 +195,13 @@ pub(crate) fn find_obstacles(
                 };
                 if let Some(opposite) = opposite {
                     near.clone_from(&opposite.nearest);
-                    let of_side = found.entry((b, side, number, true)).or_default();
+                    let of_side = found.entry((b, side, own, true)).or_default();
                     of_side.surface = Some(opposite);
                 }
             }
             for (key, upper, bound) in bounds {
                 let Some(bound) = bound else { continue };
-                let of_side = found.entry((b, side, number, upper)).or_default();
+                let of_side = found.entry((b, side, own, upper)).or_default();
                 for &(node, t) in &selected {
                     let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
                     if let Some(rigid) = &entry.rigid {
@@ -221,7 +225,7 @@ pub(crate) fn find_obstacles(
                             continue;
                         }
                         let adjusted = match standing.adjusted {
-                            Some(known) => known.get(&(k, b, side, node)).copied(),
+                            Some(known) => known.get(&(id, b, side, node)).copied(),
                             None if distance.abs() <= entry.adjust => {
                                 Some(normal.map(|n| 0.0 - n * distance))
                             }
@@ -249,7 +253,7 @@ pub(crate) fn find_obstacles(
                     of_side.limits.push(Limit {
                         node,
                         value: if upper { value } else { 0.0 - value },
-                        entry: Some(first + k),
+                        entry: Some(id),
                     });
                 }
             }
@@ -261,13 +265,15 @@ pub(crate) fn find_obstacles(
             return fail(why);
         }
     }
-    let named = |(key, of_side): ((usize, usize, usize, bool), SideObstacleData)| {
+    let named = |(key, of_side): (ObstacleKey, SideObstacleData)| {
         let surface = of_side.surface.as_ref().and_then(|s| s.name.as_ref());
-        let (body, side, number, upper) = key;
-        let what = match (number, upper) {
-            (0, false) => "below".to_string(),
-            (0, true) => "above".to_string(),
-            (k, _) => surface.map_or_else(|| format!("obstacle {k}"), |name| name.clone()),
+        let (body, side, own, upper) = key;
+        let what = match (own, upper) {
+            (None, false) => "below".to_string(),
+            (None, true) => "above".to_string(),
+            (Some(k), _) => {
+                surface.map_or_else(|| EntryId::Obstacle(k).to_string(), |name| name.clone())
+            }
         };
         Obstacle {
             body,
@@ -279,11 +285,9 @@ pub(crate) fn find_obstacles(
                 bodies[body].mesh().side_name(side)
             ),
             limits: Limits::new(of_side.limits),
-            rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+            rigid: own.and_then(|k| entries[k].rigid),
             surface: of_side.surface,
-            motion: number
-                .checked_sub(1)
-                .map_or([0.0; 3], |k| entries[k].motion),
+            motion: own.map_or([0.0; 3], |k| entries[k].motion),
             nearest: of_side.nearest,
             adjusted: of_side.adjusted,
             parameters: of_side.parameters,
@@ -291,6 +295,9 @@ pub(crate) fn find_obstacles(
     };
     Ok(found.into_iter().map(named).collect())
 }
+
+/// Body, side, number of the entry of a rigid body, and whether the bound is an upper one.
+type ObstacleKey = (usize, usize, Option<usize>, bool);
 
 /// The data of the entries for the nodes of one side.
 #[derive(Default)]

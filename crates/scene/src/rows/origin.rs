@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::body::Body;
+use crate::model::entry::EntryId;
 use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use base::Location;
 
@@ -24,7 +25,7 @@ pub(crate) struct SideOrigin {
     pub is_contact: bool,
     /// Whether its gap replaces that of the bodies, whatever that is.
     pub replaces_gap: bool,
-    /// The numbers of the entries that it has become, ties before contacts.
+    /// The numbers of the entries that it has become.
     pub entries: Range<usize>,
 }
 
@@ -68,6 +69,16 @@ impl<'b> BodyNames<'b> {
 type NamedSides = ([String; 2], [Vec<(usize, usize)>; 2]);
 
 impl SideOrigin {
+    /// The entries that it has become.
+    pub fn ids(&self) -> impl Iterator<Item = EntryId> {
+        let id = if self.is_contact {
+            EntryId::Contact
+        } else {
+            EntryId::Tie
+        };
+        self.entries.clone().map(id)
+    }
+
     /// That of a tie which has become some entries.
     pub fn of_tie(
         names: &BodyNames<'_>,

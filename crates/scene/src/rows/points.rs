@@ -3,10 +3,9 @@
 use super::entry::both;
 use super::meeting::{CoincidentMembers, Meeting};
 use super::reach::Reach;
+use super::row::{Bound, Row};
 use crate::body::Body;
 use crate::geometry::interface::{BodyInterface, InterfaceShape, Link};
-use crate::model::profile::Limit;
-use crate::model::steps::Factors;
 use crate::rows::at_node::AtNode;
 use crate::validate::agree;
 use base::linalg::union_find::UnionFind;
@@ -16,61 +15,27 @@ use fetifeti::problem::{BodyNode, RowSource};
 /// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterfacePoint {
-    /// Its number: the lowest body dof at the point, unique in the scene.
+    /// The block of its rows: the lowest body dof at the point, or at the points to which equations and rows between
+    /// sides whose nodes do not match lead.
     pub block: u64,
-    /// The subdomain of lowest index that contains the point; the rank that owns it provides the rows.
+    /// The subdomain of lowest index that contains the point, or one of these.
     pub subdomain: usize,
     /// The nodes, by increasing body and node.
     pub members: Vec<BodyNode>,
     /// Lowest member (index into `members`) to which each member is tied; the member itself if there is no lower one.
     pub tied_to: Vec<usize>,
-    /// The rows: pairs of members first, then members beside obstacles. There are no equalities where u is given, and
-    /// no inequalities that given values or ties decide.
-    pub rows: Vec<PointRow>,
 }
 
-/// A row at a point: u_a − u_b = 0 (tie), u_a − u_b ≤ g (contact) or u_a ≤ g (obstacle), each along a direction.
-///
-/// A pair that shares a face has a row if the face is tied or in contact there, or is open there but tied elsewhere. A
-/// pair that meets only in a corner has a row if ties connect it: the rows are fully redundant at cross points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointRow {
-    /// Indices a, b into [`InterfacePoint::members`]. An equality has the lower index first, a contact the order of its
-    /// inequality; a row beside an obstacle has no b.
-    pub members: [Option<usize>; 2],
-    /// The unit vector along which u is taken: a component, or the normal out of a.
-    pub direction: [f64; 3],
-    /// Whether the row holds initially. An equality that does not hold marks candidate contact nodes; of two bounds at
-    /// one node only the lower one can hold.
-    pub holds: bool,
-    /// The data of an inequality; `None`: an equality.
-    pub inequality: Option<Box<Inequality>>,
-    /// The interface or obstacle that it comes from.
-    pub source: RowSource,
-    /// Index into the `shared` of that interface, or the node of the body beside the obstacle.
-    pub node: usize,
-}
-
-/// The right-hand side of an inequality: the tightest of its limits, the initial distance, and the given values.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Inequality {
-    /// The bounds of all entries that select the node.
-    pub limits: Vec<Limit>,
-    /// The initial distance.
-    pub distance: f64,
-    /// The given values of u along the direction at a and at b, without the factors of load steps.
-    pub given: [f64; 2],
-}
-
-/// The points of a scene that satisfy `wanted`, each of which has a node of a body that is `near`. Nodes that are tied
-/// to a given value are added to the given nodes of their body, at all points.
+/// The points of a scene that satisfy `wanted`, each of which has a node of a body that is `near`, and the rows between
+/// their members in the order of points. There are no equalities where u is given. Nodes that are tied to a given value
+/// are added to the given nodes of their body, at all points.
 pub(crate) fn collect(
     bodies: &mut [Body],
     interfaces: &[BodyInterface],
     near: &dyn Fn(usize) -> bool,
     wanted: &dyn Fn(&InterfacePoint) -> bool,
-) -> Result<Vec<InterfacePoint>> {
-    let mut out: Vec<InterfacePoint> = Vec::new();
+) -> Result<(Vec<InterfacePoint>, Vec<Row>)> {
+    let (mut points, mut rows) = (Vec::new(), Vec::new());
     let mut inherited = Vec::new();
     // A given value is passed on by a tie to a body that has it.
     let ties = (interfaces.iter()).any(|i| i.shared.iter().any(|s| s.link == Link::Tied));
@@ -87,8 +52,8 @@ pub(crate) fn collect(
             prescribe(bodies, &point, c, &mut inherited)?;
         }
         if wanted(&point) {
-            add_rows(&mut point, &mut pairs, interfaces, components);
-            out.push(point);
+            add_rows(&point, &mut pairs, interfaces, components, &mut rows);
+            points.push(point);
         }
     }
     for (BodyNode { body, node }, component, value) in inherited {
@@ -99,14 +64,11 @@ pub(crate) fn collect(
     for body in bodies.iter_mut() {
         body.prescribed.sort_by_key(|&(dof, _)| dof);
     }
-    for InterfacePoint { members, rows, .. } in &mut out {
-        rows.retain(|row| {
-            let ends = || row.members.iter().flatten().map(|&m| members[m]);
-            let free = |m: BodyNode| !m.along(bodies, row.direction).terms.is_empty();
-            row.inequality.is_some() || ends().all(free)
-        });
-    }
-    Ok(out)
+    rows.retain(|row: &Row| {
+        let free = |m: &BodyNode| !m.along(bodies, row.direction).terms.is_empty();
+        row.law.is_inequality() || row.members.iter().flatten().all(free)
+    });
+    Ok((points, rows))
 }
 
 /// u at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given
@@ -114,41 +76,6 @@ pub(crate) fn collect(
 pub(crate) struct DirectionalValue {
     pub terms: Vec<(u64, f64)>,
     pub given: f64,
-}
-
-impl PointRow {
-    /// The right-hand side c at a load step; 0 for an equality.
-    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
-        let inequality = self.inequality.as_ref();
-        inequality.map_or(0.0, |i| {
-            i.right_hand_side(factors, self.members[1].is_some())
-        })
-    }
-
-    /// The bounds of an inequality; empty for an equality.
-    pub(crate) fn limits(&self) -> &[Limit] {
-        self.inequality.as_ref().map_or(&[], |i| &i.limits)
-    }
-
-    /// Whether it comes from an obstacle.
-    pub fn is_beside_obstacle(&self) -> bool {
-        matches!(self.source, RowSource::Obstacle(_))
-    }
-}
-
-impl Inequality {
-    /// The right-hand side at a load step; `paired`: there is a b.
-    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>, paired: bool) -> f64 {
-        let (mut g, _) = factors.bound(&self.limits);
-        g += self.distance;
-        // The row is u_a ≤ g + u_b, or −u_b ≤ g − u_a.
-        let [a, b] = self.given.map(|given| given * factors.dirichlet());
-        g -= a;
-        if paired {
-            g += b;
-        }
-        g
-    }
 }
 
 impl InterfacePoint {
@@ -163,9 +90,15 @@ impl InterfacePoint {
             block: first.dof(bodies, 0),
             subdomain: body.first_subdomain + owner.expect("a point has a node"),
             tied_to: (0..members.len()).collect(),
-            rows: Vec::new(),
             members,
         }
+    }
+
+    /// Whether ties join two of its members.
+    pub(crate) fn ties(&self, members: [BodyNode; 2]) -> bool {
+        let place = |m: BodyNode| self.members.iter().position(|other| *other == m);
+        let [a, b] = members.map(|m| place(m).map(|k| self.tied_to[k]));
+        a == b
     }
 }
 
@@ -191,11 +124,15 @@ fn joined(
 }
 
 /// Adds a row for each pair that gets one; contacts without effect are dropped later.
+///
+/// A pair that shares a face has a row if the face is tied or in contact there, or is open there but tied elsewhere. A
+/// pair that meets only in a corner has a row if ties connect it: the rows are fully redundant at cross points.
 fn add_rows(
-    point: &mut InterfacePoint,
+    point: &InterfacePoint,
     pairs: &mut [CoincidentMembers],
     interfaces: &[BodyInterface],
     components: usize,
+    rows: &mut Vec<Row>,
 ) {
     let may_join = joined(point.members.len(), pairs, interfaces, &|l| {
         matches!(l, Link::Tied | Link::Open)
@@ -214,24 +151,26 @@ fn add_rows(
             continue;
         }
         let order = if contact { interface.order } else { [0, 1] };
-        let row = |direction| PointRow {
-            members: order.map(|k| Some(pair.members[k])),
-            direction,
-            holds,
-            inequality: contact.then(|| {
-                Box::new(Inequality {
-                    limits: interface.limits.at(pair.node).to_vec(),
-                    distance: interface.distances[pair.node],
-                    given: [0.0; 2],
-                })
-            }),
-            source: RowSource::Interface(pair.interface),
-            node: pair.node,
+        let bound = || Bound {
+            limits: interface.limits.at(pair.node).to_vec(),
+            value: interface.distances[pair.node],
+            given: [0.0; 2],
+        };
+        let place = (point.block, point.subdomain);
+        let row = |direction| {
+            let source = RowSource::Interface(pair.interface);
+            let members = order.map(|k| Some(point.members[pair.members[k]]));
+            let tie = Row::tie(source, pair.node, members, direction, place);
+            if contact {
+                tie.in_contact(bound())
+            } else {
+                Row { holds, ..tie }
+            }
         };
         if contact && components > 1 {
-            point.rows.push(row(interface.normal_in_order(pair.node)));
+            rows.push(row(interface.normal_in_order(pair.node)));
         } else {
-            point.rows.extend((0..components).map(|c| row(unit(c))));
+            rows.extend((0..components).map(|c| row(unit(c))));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use super::equations::Equation;
+use super::row::Row;
 use crate::checked::Scene;
 use crate::geometry::facing::shortest;
 use base::linalg::sorted::distinct;
@@ -26,24 +26,28 @@ impl<'a> Rounding<'a> {
         }
     }
 
-    /// That of a row between these bodies.
-    pub fn of(&self, bodies: impl Iterator<Item = usize>) -> f64 {
-        bodies
-            .map(|body| *self.angles[body].get_or_init(|| self.angle(body)))
-            .sum()
-    }
-
-    /// That of an equation: its coefficients have digits, too.
-    pub fn of_equation(&self, equation: &Equation) -> f64 {
+    /// That of a row: of the bodies of its members. An equation has none; its coefficients have digits, too.
+    pub fn of(&self, row: &Row) -> f64 {
+        let members = row.members.iter().flatten();
+        let terms = match &row.combination {
+            Some(combination) if row.members[0].is_none() => combination,
+            _ => return self.of_bodies(members.map(|m| m.body)),
+        };
         let bodies = &self.scene.bodies;
         let body = |&(dof, _): &(u64, f64)| bodies.partition_point(|b| b.first_dof <= dof) - 1;
-        let largest = equation.terms.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
+        let largest = terms.terms.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
         let of_factors = if largest > 0.0 {
-            UNITS * equation.resolution / largest
+            UNITS * terms.resolution / largest
         } else {
             0.0
         };
-        of_factors + self.of(distinct(equation.terms.iter().map(body)).into_iter())
+        of_factors + self.of_bodies(distinct(terms.terms.iter().map(body)).into_iter())
+    }
+
+    fn of_bodies(&self, bodies: impl Iterator<Item = usize>) -> f64 {
+        bodies
+            .map(|body| *self.angles[body].get_or_init(|| self.angle(body)))
+            .sum()
     }
 
     /// The resolution of the coordinates of a body divided by its shortest edge; 0 for boxes.

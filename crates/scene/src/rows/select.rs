@@ -96,7 +96,7 @@ pub(crate) fn selected(
     let extent = entry.extent;
     if interface.shape == InterfaceShape::Corner {
         // A contact of all pairs applies to faces only: a contact in a corner must name the pair.
-        let meant = entry.contact.is_none() || *entry.pair != PairSelector::All;
+        let meant = !entry.is_contact() || *entry.pair != PairSelector::All;
         return Ok(if *extent == Extent::All && meant {
             (0..interface.shared.len()).collect()
         } else {
@@ -144,9 +144,10 @@ fn unmatched(
     // Messages name the body that was written later.
     let later = &bodies[interface.bodies[1]].spec.location;
     let location = entry.location.unwrap_or(later);
-    let (are, face) = match entry.contact {
-        None => ("are tied", "tied face"),
-        Some(_) => ("are in contact", "contact face"),
+    let (are, face) = if entry.is_contact() {
+        ("are in contact", "contact face")
+    } else {
+        ("are tied", "tied face")
     };
     Error::input(format!(
         "bodies `{}` and `{}` {are}, but node {at} of `{}` (t = {t}) meets no node of `{}` \

@@ -79,7 +79,7 @@ pub(crate) fn expand(
                     (contact.multipliers, reach, false),
                     &contact.location,
                 )?;
-                let first = spec.ties.len() + contacts.len();
+                let first = contacts.len();
                 let entries = first..first + found.len();
                 origins.extend(SideOrigin::of_contact(&names, &contact, entries));
                 contacts.extend(found.into_iter().map(|(pair, sides)| ContactSpec {
@@ -89,7 +89,7 @@ pub(crate) fn expand(
                 }));
             }
             _ => {
-                let first = spec.ties.len() + contacts.len();
+                let first = contacts.len();
                 origins.extend(SideOrigin::of_contact(&names, &contact, first..first + 1));
                 contacts.push(contact);
             }

@@ -1,9 +1,7 @@
 //! The terms of a row: all nodes that it joins with their coefficients, also those of given values. The forces of its
 //! multiplier act there, each at its own node.
 
-use super::equations::Equation;
-use super::mortar_row::MortarRow;
-use super::points::{InterfacePoint, PointRow};
+use super::row::Row;
 use crate::checked::Scene;
 use fetifeti::problem::BodyNode;
 
@@ -26,56 +24,36 @@ impl Scene {
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
     ) -> impl Iterator<Item = RowTerms> + 's {
-        let at_points = self.each_row(owns).map(|(p, row)| self.at_point(p, row));
-        let equations = self.own_equations(owns);
-        let equations = equations.map(|(_, e)| self.of_equation(e));
-        let mortar = self.own_mortar(owns).map(|m| self.of_mortar(m));
-        at_points.chain(equations).chain(mortar)
+        self.rows_of(owns).map(|row| self.all_terms(row))
     }
 
-    fn at_point(&self, point: &InterfacePoint, row: &PointRow) -> RowTerms {
+    fn all_terms(&self, row: &Row) -> RowTerms {
         let along = self.components_of(row.direction);
-        let members = row.members.into_iter().zip([1.0, -1.0]);
-        let term =
-            |(m, sign): (Option<usize>, f64)| Some((point.members[m?], along.map(|n| sign * n)));
+        let mut terms: Vec<RowTerm> = Vec::new();
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            let nodes = row.side(side);
+            terms.extend(nodes.map(|(node, weight)| (node, along.map(|n| sign * weight * n))));
+        }
+        let combination = row.combination.as_ref();
+        // An equation has no sides.
+        if let Some(all) = combination.filter(|_| row.members[0].is_none()) {
+            terms.extend(all.terms.iter().chain(&all.held).map(|t| self.at_dof(*t)));
+        }
         RowTerms {
-            terms: members.filter_map(term).collect(),
-            support: false,
+            terms,
+            support: combination.is_some_and(|c| c.support),
         }
     }
 
-    fn of_mortar(&self, row: &MortarRow) -> RowTerms {
-        let along = self.components_of(row.direction);
-        let sides = row.members.into_iter().zip(&row.weights).zip([1.0, -1.0]);
-        let terms = sides.flat_map(|((member, weights), sign)| {
-            let body = member.map(|m| m.body);
-            weights.iter().filter_map(move |&(node, weight)| {
-                let node = BodyNode { body: body?, node };
-                Some((node, along.map(|n| sign * weight * n)))
-            })
-        });
-        RowTerms {
-            terms: terms.collect(),
-            support: false,
-        }
-    }
-
-    fn of_equation(&self, equation: &Equation) -> RowTerms {
-        let all = equation.terms.iter().chain(&equation.held);
-        let term = |&(of_body, factor): &(u64, f64)| {
-            let after = self.bodies.partition_point(|b| b.first_dof <= of_body);
-            let body = &self.bodies[after - 1];
-            let dof = (of_body - body.first_dof) as usize;
-            let mut coefficients = [0.0; 3];
-            coefficients[dof % body.components] = factor;
-            let node = dof / body.components;
-            let body = after - 1;
-            (BodyNode { body, node }, coefficients)
-        };
-        RowTerms {
-            terms: all.map(term).collect(),
-            support: equation.support,
-        }
+    fn at_dof(&self, (of_body, factor): (u64, f64)) -> RowTerm {
+        let after = self.bodies.partition_point(|b| b.first_dof <= of_body);
+        let body = &self.bodies[after - 1];
+        let dof = (of_body - body.first_dof) as usize;
+        let mut coefficients = [0.0; 3];
+        coefficients[dof % body.components] = factor;
+        let node = dof / body.components;
+        let body = after - 1;
+        (BodyNode { body, node }, coefficients)
     }
 
     /// A direction without the components that the scene does not have.

@@ -5,6 +5,7 @@ use crate::body::Body;
 use crate::geometry::interface::{BodyInterface, InterfaceShape};
 use crate::geometry::matching::{Mismatch, NodeMatching};
 use crate::geometry::mortar;
+use crate::model::entry::EntryId;
 use crate::model::joints::{Extent, PairSelector};
 use crate::model::spec::{ByDefault, SceneSpec};
 use std::collections::HashMap;
@@ -18,15 +19,15 @@ pub(super) fn unmatched(
     interfaces: &mut [BodyInterface],
 ) {
     let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
-    let ties = spec.ties.iter();
-    let ties = ties.map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
-    let contacts = spec.contacts.iter();
-    let contacts = contacts.map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
-    // The entries that name no sides, by number: those of all pairs, and those of each pair of names.
+    let ties = (0..).map(EntryId::Tie).zip(&spec.ties);
+    let ties = ties.map(|(id, t)| (id, &t.pair, t.multipliers, &t.extent, t.sides));
+    let contacts = (0..).map(EntryId::Contact).zip(&spec.contacts);
+    let contacts = contacts.map(|(id, c)| (id, &c.pair, c.multipliers, &c.extent, c.sides));
+    // The entries that name no sides: those of all pairs, and those of each pair of names.
     let mut of_all = Vec::new();
     let mut of_names: HashMap<[&str; 2], Vec<_>> = HashMap::new();
-    for (number, (pair, which, extent, sides)) in ties.chain(contacts).enumerate() {
-        let entry = (number, pair, which, extent);
+    for (id, pair, which, extent, sides) in ties.chain(contacts) {
+        let entry = (id, pair, which, extent);
         match pair {
             _ if sides.is_some() => {}
             PairSelector::All => of_all.push(entry),
@@ -49,12 +50,12 @@ pub(super) fn unmatched(
         let named = of_names.get(&in_order(a, b)).into_iter().flatten();
         let mut entries: Vec<_> = of_all.iter().chain(named).collect();
         entries.sort_by_key(|entry| entry.0);
-        for &&(number, pair, of_entry, extent) in &entries {
+        for &&(id, pair, of_entry, extent) in &entries {
             let Some(found) = meant(pair, of_entry) else {
                 continue;
             };
             single |= !whole(extent) && *extent != Extent::None;
-            contact |= number >= spec.ties.len();
+            contact |= matches!(id, EntryId::Contact(_));
             if which.is_none() || *pair != PairSelector::All {
                 which = Some(found);
             }

@@ -6,7 +6,6 @@ use super::UnknownLayout;
 use crate::assembled::eliminated::{EliminatedUnknowns, Trouble};
 use crate::assembled::frame::{parallel, NodeFrame};
 use base::linalg::vec3::{norm, unit};
-use fetifeti::problem::RowSource;
 use fetifeti::Row;
 
 /// The directions along which inequalities bound a node.
@@ -56,10 +55,11 @@ impl UnknownLayout<'_> {
 
     /// Solves the equations beside ties. What inequalities take of a node stays.
     pub(super) fn eliminate(&mut self, rows: &[Row], bounded: &BoundedNodes) {
-        let equations = rows
-            .iter()
-            .filter(|row| !row.law.is_inequality() && self.is_chained(row.label.source));
-        let placed = equations.map(|row| {
+        let equations = rows.iter().zip(&self.scene.rows);
+        // Ties of two unknowns have none of their own: the numbering has joined them.
+        let equations = equations
+            .filter(|(row, of_scene)| !row.law.is_inequality() && of_scene.combination.is_some());
+        let placed = equations.map(|(row, _)| {
             let terms = row.terms.iter().map(|&(dof, b)| (self.index(dof), b));
             (terms.collect(), row.gap)
         });
@@ -89,15 +89,6 @@ impl UnknownLayout<'_> {
                     x[0], x[1], x[2]
                 ));
             }
-        }
-    }
-
-    /// Whether rows of a source have many terms, so that they are no ties of two unknowns.
-    fn is_chained(&self, source: RowSource) -> bool {
-        match source {
-            RowSource::Equation(_) => true,
-            RowSource::Interface(k) => self.scene.interfaces[k].mortar.is_some(),
-            RowSource::Obstacle(_) => false,
         }
     }
 

@@ -60,7 +60,11 @@ fn cases_have_the_size_that_they_are_named_after() {
         ("blocks-contact-4", false),
         ("blocks-contact-4-mortar", true),
     ] {
-        assert_eq!(!load(name, true).mortar.is_empty(), mortar, "{name}");
+        assert_eq!(
+            load(name, true).mortar_rows().next().is_some(),
+            mortar,
+            "{name}"
+        );
     }
 }
 
