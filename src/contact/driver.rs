@@ -12,6 +12,8 @@ use crate::Result;
 
 type State<P> = <<P as InnerProblem>::Course as Course>::State;
 type Step<P> = <<P as InnerProblem>::Course as Course>::Step;
+/// Called after each step.
+pub type Watch<'w, P> = dyn FnMut(&Step<P>, &State<P>) -> Result<()> + 'w;
 type Solution<P> = <<P as InnerProblem>::Course as Course>::Solution;
 
 /// Solves a problem with its inequalities, from a state or from scratch. Returns the solution and the steps of the
@@ -22,7 +24,7 @@ type Solution<P> = <<P as InnerProblem>::Course as Course>::Solution;
 pub fn solve<P: InnerProblem>(
     problem: &P,
     start: Option<State<P>>,
-    observe: &mut dyn FnMut(&Step<P>, &State<P>) -> Result<()>,
+    observe: &mut Watch<P>,
 ) -> Result<(Solution<P>, Vec<Step<P>>)> {
     let (mut found, mut steps) = follow(problem, Begin::First(start), observe)?;
     for round in 0.. {
@@ -42,7 +44,7 @@ pub fn solve<P: InnerProblem>(
 fn follow<P: InnerProblem>(
     problem: &P,
     begin: Begin<State<P>>,
-    observe: &mut dyn FnMut(&Step<P>, &State<P>) -> Result<()>,
+    observe: &mut Watch<P>,
 ) -> Result<(Solution<P>, Vec<Step<P>>)> {
     let clock = Instant::now();
     let mut steps: Vec<Step<P>> = Vec::new();

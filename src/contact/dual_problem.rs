@@ -6,18 +6,18 @@
 //! | [`AugmentedLagrangian`] | semismooth Newton steps on springs, and trials of the sets that they find |
 //! | [`Smalbe`] | bound-constrained problems by MPRGP, and trials of the sets that they find |
 //!
-//! A trial wraps a strategy: it is an [`ActiveSet`] that is followed for as long as it comes nearer. A new strategy is a
-//! file with a [`Strategy`](super::strategy::Strategy), and a line in [`begin`](DualProblem::begin).
+//! A trial wraps a strategy: it is an [`ActiveSet`] that is followed for as long as it comes nearer. A new strategy is
+//! a file with a [`Strategy`](super::strategy::Strategy), and a line in [`begin`](DualProblem::begin).
 
 use super::active_set::ActiveSet;
 use super::certified_signs::{signs, Signs};
+use super::course::DualCourse;
 use super::driver::{self, Begin, Begun, InnerProblem, Verdict};
 use super::existence::Existence;
 use super::lagrangian::AugmentedLagrangian;
 use super::settings::{ContactSettings, ContactType};
 use super::smalbe::Smalbe;
 use super::state::{Observer, State, Step};
-use super::strategy::Course;
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
@@ -43,16 +43,6 @@ pub(crate) fn solve(
         };
         driver::solve(&problem, start.cloned(), observe)
     })
-}
-
-/// The types of a loop around the linear method.
-pub(super) struct DualCourse;
-
-impl Course for DualCourse {
-    type State = State;
-    type Step = Step;
-    type End = Status;
-    type Solution = LinearSolution;
 }
 
 /// The linear method with its inequalities.

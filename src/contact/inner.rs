@@ -56,7 +56,7 @@ pub trait InnerProblem {
     /// Such bodies.
     fn doubt(&self, at: &<Self::Course as Course>::State) -> Result<()>;
 
-    /// The same where a loop has ended, if it has found no solution.
+    /// Asks whether there is a solution where a loop has ended, if it has found none.
     ///
     /// # Errors
     /// Such bodies.

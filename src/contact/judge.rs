@@ -15,11 +15,11 @@ use parallel::exchange::{max_all, total};
 /// used: they may be rounding themselves, where bodies touch without force or contact holds all that could move.
 #[derive(Debug, Clone, Copy)]
 pub struct JudgeSizes {
-    /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`Tuning::rounding`] of it are what sums of
-    /// loads leave.
+    /// The loads on one subdomain, Σ|f|, the largest of all. Multipliers below [`Tuning::rounding`] of it are what sums
+    /// of loads leave.
     pub load: f64,
-    /// These loads over the largest diagonal entry of K on Γ, the largest of all subdomains. A gap below [`Tuning::rounding`]
-    /// of it changes forces by less than rounding of the loads.
+    /// These loads over the largest diagonal entry of K on Γ, the largest of all subdomains. A gap below
+    /// [`Tuning::rounding`] of it changes forces by less than rounding of the loads.
     pub give: f64,
 }
 

@@ -15,7 +15,7 @@
 //! converged.
 
 use super::active_set::{ActiveSet, ActiveSetChange};
-use super::dual_problem::DualCourse;
+use super::course::DualCourse;
 use super::semismooth_newton::{NewtonOutcome, SemismoothNewton};
 use super::settings::ContactSettings;
 use super::state::{ActiveSetProgress, State, Step};

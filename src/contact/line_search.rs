@@ -126,9 +126,9 @@ impl Penalty<'_> {
     }
 
     /// How far to go from one point to another; `None` if φ does not fall. With `beyond` this is the t in (0, ∞) that
-    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`Tuning::line_enough`] of what the minimum in (0, 1]
-    /// has: the minimum lies at a kink, where rows neither hold nor leave, and Newton steps from kink to kink are
-    /// short. Collective.
+    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`Tuning::line_enough`] of what the minimum
+    /// in (0, 1] has: the minimum lies at a kink, where rows neither hold nor leave, and Newton steps from kink to kink
+    /// are short. Collective.
     pub fn length(
         &self,
         comm: &SimpleCommunicator,

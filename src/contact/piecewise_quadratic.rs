@@ -1,8 +1,8 @@
-//! The minimiser of a convex, piecewise quadratic function φ: by Newton's method, with steps to the least value along
+//! The minimiser of a convex, piecewise quadratic function φ, by Newton's method with steps to the least value along
 //! each direction.
 //!
-//! Along a line the slope φ' is continuous, increasing and piecewise linear. Newton's method on φ' ends after a handful of
-//! evaluations, because it is exact on the piece with the minimum. Bisection takes over where it leaves the bracket.
+//! Along a line the slope φ' is continuous, increasing and piecewise linear. Newton's method on φ' ends after a handful
+//! of evaluations, because it is exact on the piece with the minimum. Bisection takes over where it leaves the bracket.
 
 use super::tuning::Tuning;
 

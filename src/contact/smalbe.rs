@@ -17,7 +17,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::active_set::ActiveSet;
 use super::augmented::Augmented;
-use super::dual_problem::DualCourse;
+use super::course::DualCourse;
 use super::mprgp::{BoundedQuadratic, Setting};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, ActiveSetProgress, State, Step};

@@ -15,7 +15,7 @@ mod next_set;
 
 use std::time::Instant;
 
-use super::dual_problem::DualCourse;
+use super::course::DualCourse;
 use super::existence::Existence;
 use super::judge::JudgeSizes;
 use super::pull_monitor::PullMonitor;

@@ -70,7 +70,8 @@ impl<'a> Existence<'a> {
         }
     }
 
-    /// The same where there are many motions. The search begins at `lambda`, where a loop has come.
+    /// Whether the rows can carry the load, where there are many motions. The search begins at `lambda`, where a loop
+    /// has come.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.

@@ -273,11 +273,11 @@ impl PiecewiseQuadratic for Stretched<'_> {
     fn slope(&self, t: f64) -> [f64; 2] {
         let (of, along) = (self.of, &self.along);
         let mut sums = [0.0, 0.0];
-        for k in 0..self.stretch.len() {
-            let s = self.stretch[k] + t * along[k];
+        for (k, (stretch, along)) in self.stretch.iter().zip(along).enumerate() {
+            let s = stretch + t * along;
             if of.pulls(k, s) {
-                sums[0] += s * along[k];
-                sums[1] += along[k] * along[k];
+                sums[0] += s * along;
+                sums[1] += along * along;
             }
         }
         sum_all(of.comm, &mut sums);

@@ -24,9 +24,9 @@
 //! finds it. Where rows depend on each other, the trial looks for multipliers that do not pull. Moves around cycles
 //! only help: forces stay, and the dual energy falls.
 
+use super::course::Solvers;
 use super::cycles::descend_around_cycles;
 use super::groups::ActiveGroups;
-use super::outer::Solvers;
 use super::reduced::Reduced;
 use super::rows::{GapInequality, Inequalities};
 use base::Result;

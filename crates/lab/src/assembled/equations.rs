@@ -1,10 +1,10 @@
 //! The equations of one active set of the assembled problem, and the verdict on their solution.
 
-use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
-use super::judged::Judged;
-use super::outer::{
+use super::course::{
     ActiveSetEnd, OuterCertificate, OuterEnd, OuterSolve, OuterStep, SetState, Solvers, Tolerances,
 };
+use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
+use super::judged::Judged;
 use super::reduced::Reduced;
 use super::refine::over;
 use super::rows::Inequalities;

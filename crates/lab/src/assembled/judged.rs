@@ -1,6 +1,6 @@
 //! The verdict of a solution on its active set: which rows are wrong, and which set follows.
 
-use super::outer::OuterCertificate;
+use super::course::OuterCertificate;
 use super::refine::over;
 use super::rows::Inequalities;
 

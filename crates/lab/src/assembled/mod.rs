@@ -6,6 +6,7 @@
 //!      └──> Inequalities (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
 //! ```
 
+pub mod course;
 mod cycles;
 mod damped_newton;
 mod eliminated;

@@ -3,9 +3,9 @@
 //! MUMPS factors the assembled matrix; with inequalities, an active-set loop surrounds it. Every solution is refined,
 //! by default with residuals in twice the working precision. It runs on any number of ranks.
 
+use super::course::{ActiveSetEnd, OuterSolve, Tolerances};
 use super::layout::UnknownLayout;
 use super::near::{Near, NearKernel};
-use super::outer::{ActiveSetEnd, OuterSolve, Tolerances};
 use super::problem::AssembledProblem;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};

@@ -8,9 +8,9 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 
+use super::course::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState};
 use super::equations::{Equations, Manner, Solved};
 use super::groups::MultiplierSigns;
-use super::outer::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState};
 use base::Result;
 use fetifeti::driver::{Checkpoint, Proposal, Strategy};
 

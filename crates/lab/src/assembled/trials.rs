@@ -6,10 +6,10 @@
 
 use std::cell::RefCell;
 
+use super::course::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState};
 use super::damped_newton::DampedNewton;
 use super::equations::{Equations, Manner, Solved};
 use super::groups::MultiplierSigns;
-use super::outer::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState};
 use super::reduced::Reduced;
 use super::rows::Inequalities;
 use base::Result;

@@ -10,8 +10,8 @@ use super::pattern::JumpMatrices;
 /// has a factor of B D⁻¹ Bᵀ, in which what is left is squared: below √ε nothing would be left there.
 const FOLLOWS: f64 = 1e-7;
 
-/// A pivot row has at least this part of what is left, relative to its size, of any row. With 0.1 the rows that are kept
-/// of a fine side may be as good as dependent: along a chain of neighbours what is lost at each step multiplies.
+/// A pivot row has at least this part of what is left, relative to its size, of any row. With 0.1 the rows that are
+/// kept of a fine side may be as good as dependent: along a chain of neighbours what is lost at each step multiplies.
 const THRESHOLD: f64 = 0.9;
 
 /// A row that follows from others, and the combination that it is: (row, coefficient).
@@ -27,7 +27,7 @@ struct Open {
     row: u32,
     /// The largest entry of the row in B.
     size: f64,
-    /// What is left of it: (dof, value), by increasing dof.
+    /// The rest of it: (dof, value), by increasing dof.
     left: Vec<(u32, f64)>,
     /// Pivot rows that were subtracted: (step, factor).
     less: Vec<(usize, f64)>,
