@@ -110,7 +110,7 @@ impl JudgedRows {
             if jump.active[r] && pulls > pull {
                 rows.active[r] = false;
                 rows.wrong[r] = pulls / lambda_max;
-            } else if !jump.active[r] && gaps[r] > open {
+            } else if !jump.active[r] && jump.law[r].violation(gaps[r], false) > open {
                 rows.active[r] = true;
                 rows.wrong[r] = gaps[r] / y_max;
             }

@@ -18,6 +18,7 @@ use mpi::topology::SimpleCommunicator;
 use super::anchors::Anchors;
 use super::piecewise_quadratic::line_minimum;
 use super::tuning::Tuning;
+use crate::substructures::Law;
 use parallel::exchange::sum_all;
 
 /// Displacements as the rows see them, one entry for each owned row.
@@ -47,8 +48,8 @@ impl LineSearchPoint {
 
 /// The penalty terms of φ, one entry for each owned row.
 pub struct Penalty<'a> {
-    /// Whether the row is an inequality; other rows do not count.
-    pub counts: &'a [bool],
+    /// The law of the row; equations do not count.
+    pub law: &'a [Law],
     /// μ.
     pub multiplier: &'a [f64],
     /// C.
@@ -60,10 +61,16 @@ pub struct Penalty<'a> {
 }
 
 impl Penalty<'_> {
+    /// The rows that count.
+    fn inequalities(&self) -> impl Iterator<Item = (usize, Law)> + '_ {
+        let rows = self.law.iter().copied().enumerate();
+        rows.filter(|(_, law)| law.is_inequality())
+    }
+
     /// s at a point; zero for rows that do not count.
     pub fn pull(&self, at: &LineSearchPoint) -> Vec<f64> {
         let of = |i: usize| {
-            if self.counts[i] {
+            if self.law[i].is_inequality() {
                 self.multiplier[i] + at.gap[i] / self.compliance[i]
             } else {
                 0.0
@@ -81,11 +88,11 @@ impl Penalty<'_> {
         t: f64,
     ) -> [f64; 2] {
         let mut sums = [0.0; 2];
-        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+        for (i, law) in self.inequalities() {
             let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
             let s = self.multiplier[i] + (from.gap[i] + t * gap) / self.compliance[i];
-            sums[0] += gap * (s.max(0.0) - (from.force[i] + t * force));
-            sums[1] += gap * (f64::from(u8::from(s > 0.0)) * gap / self.compliance[i] - force);
+            sums[0] += gap * (law.project(s) - (from.force[i] + t * force));
+            sums[1] += gap * (f64::from(u8::from(law.bears(s))) * gap / self.compliance[i] - force);
         }
         sum_all(comm, &mut sums);
         let [a, b] = self.slope_of_anchors(comm, from, to, t);
@@ -112,10 +119,10 @@ impl Penalty<'_> {
         t: f64,
     ) -> f64 {
         let mut sum = [0.0];
-        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+        for (i, law) in self.inequalities() {
             let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
             let (mu, c) = (self.multiplier[i], self.compliance[i]);
-            let [was, is] = [0.0, t].map(|t| (mu + (from.gap[i] + t * gap) / c).max(0.0));
+            let [was, is] = [0.0, t].map(|t| law.project(mu + (from.gap[i] + t * gap) / c));
             sum[0] += 0.5 * c * (is - was) * (is + was);
             sum[0] -= t * gap * (from.force[i] + 0.5 * t * force);
         }

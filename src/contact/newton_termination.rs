@@ -19,8 +19,8 @@ impl SemismoothNewton<'_> {
             return Ok(false);
         };
         let pull = self.penalty().pull(point);
-        let pairs = || (0..pull.len()).filter(|&i| self.counts[i]);
-        let apart = pairs().map(|i| (pull[i].max(0.0) - point.force[i]).abs());
+        let pairs = || (0..pull.len()).filter(|&i| self.law[i].is_inequality());
+        let apart = pairs().map(|i| (self.law[i].project(pull[i]) - point.force[i]).abs());
         let force = pairs().map(|i| point.force[i].abs());
         let (apart, force) = (apart.fold(0.0, f64::max), force.fold(0.0, f64::max));
         if highest(comm, apart) > rtol.sqrt() * highest(comm, force) {
@@ -29,7 +29,7 @@ impl SemismoothNewton<'_> {
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
         let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());
-        let open = open.filter(|(i, _)| self.counts[*i]);
+        let open = open.filter(|(i, _)| self.law[*i].is_inequality());
         let open = open.fold(0.0f64, |a, (i, gap)| {
             if jump.active[i] {
                 a.max(gap.abs())

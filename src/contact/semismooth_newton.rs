@@ -25,6 +25,7 @@ use crate::feti::krylov::residual::Iterate;
 use crate::feti::krylov::target::target;
 use crate::feti::LinearMethod;
 use crate::status::Status;
+use crate::substructures::Law;
 use crate::Result;
 use parallel::exchange::total;
 
@@ -48,8 +49,8 @@ pub struct SemismoothNewton<'a> {
     repairs: Repairs<'a>,
     pub(super) springs: CompliantRows<'a>,
     pub(super) at: Iterate,
-    /// Whether each owned row is an inequality.
-    pub(super) counts: Vec<bool>,
+    /// The law of each owned row.
+    pub(super) law: Vec<Law>,
     /// The compliance of the nodes on the owned rows.
     pub(super) nodes: Vec<f64>,
     pub(super) stiffness: f64,
@@ -88,10 +89,8 @@ impl<'a> SemismoothNewton<'a> {
         let dual = method.dual();
         let stiffness = &dual.stiffness;
         let nodes = stiffness.compliance_of_rows(&method.problem)?;
-        let counts: Vec<bool> = (stiffness.jump.law.iter())
-            .map(|law| law.is_inequality())
-            .collect();
-        let mine = counts.iter().filter(|c| **c).count();
+        let law = stiffness.jump.law.clone();
+        let mine = law.iter().filter(|law| law.is_inequality()).count();
         let loads = Loads::new(&method.problem, &dual);
         let mut at = Iterate::new(&dual, loads)?;
         if state.reference == 0.0 {
@@ -111,8 +110,8 @@ impl<'a> SemismoothNewton<'a> {
             at,
             stiffness: first / tuning.stiffer,
             compliance: Vec::new(),
-            multiplier: vec![0.0; counts.len()],
-            counts,
+            multiplier: vec![0.0; law.len()],
+            law,
             nodes,
             point: None,
             anchors: None,
@@ -136,7 +135,7 @@ impl<'a> SemismoothNewton<'a> {
 
     pub(super) fn penalty(&self) -> Penalty<'_> {
         Penalty {
-            counts: &self.counts,
+            law: &self.law,
             multiplier: &self.multiplier,
             compliance: &self.compliance,
             anchors: self.anchors.as_ref(),
@@ -164,7 +163,11 @@ impl<'a> SemismoothNewton<'a> {
             anchors.follow(&point.motion[0]);
             anchors.soften(self.tuning.softer);
         }
-        self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
+        self.multiplier = s
+            .iter()
+            .zip(&self.law)
+            .map(|(s, law)| law.project(*s))
+            .collect();
         self.repairs.agree(&mut self.multiplier);
         state.active = self.set(&self.multiplier);
     }
@@ -174,22 +177,25 @@ impl<'a> SemismoothNewton<'a> {
     pub fn stiffen(&mut self) {
         self.begins = true;
         self.stiffness = (self.tuning.stiffer * self.stiffness).min(self.tuning.stiffest);
-        let of = |(counts, node): (&bool, &f64)| {
-            if *counts {
+        let of = |(law, node): (&Law, &f64)| {
+            if law.is_inequality() {
                 node / self.stiffness
             } else {
                 0.0
             }
         };
-        self.compliance = self.counts.iter().zip(&self.nodes).map(of).collect();
+        self.compliance = self.law.iter().zip(&self.nodes).map(of).collect();
         self.soften();
     }
 
-    /// The rows that hold: inequalities with s > 0, and the equations.
+    /// The rows that hold: inequalities that bear s, and the equations.
     fn set(&self, s: &[f64]) -> Vec<bool> {
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
-        let on = |i: usize| (self.counts[i] && s[i] > 0.0) || (!self.counts[i] && jump.initial[i]);
+        let on = |i: usize| match self.law[i] {
+            law if law.is_inequality() => law.bears(s[i]),
+            _ => jump.initial[i],
+        };
         (0..s.len()).map(on).collect()
     }
 
@@ -210,7 +216,10 @@ impl<'a> SemismoothNewton<'a> {
         let dual = self.method.dual();
         let c = &dual.stiffness.jump.gap;
         let apart = |i: usize| {
-            let point = self.point.as_ref().filter(|_| centred && self.counts[i]);
+            let point = self
+                .point
+                .as_ref()
+                .filter(|_| centred && self.law[i].is_inequality());
             let s = |p: &LineSearchPoint| self.multiplier[i] + p.gap[i] / self.compliance[i];
             point.filter(|p| active[i] && s(p) <= 0.0).map(|p| p.gap[i])
         };

@@ -26,7 +26,7 @@ fn the_minimum_along_the_step() {
     with_session(|session| {
         let gaps = [1.0, 1.5, 2.0, 3.0];
         let penalty = Penalty {
-            counts: &[true; 4],
+            law: &[Law::Unilateral; 4],
             multiplier: &[0.0, 0.1, 0.0, 2.0],
             compliance: &[0.5, 0.01, 1e-6, 0.3],
             anchors: None,
@@ -60,7 +60,7 @@ fn the_minimum_along_the_step() {
 fn a_step_to_the_minimum_has_its_full_length() {
     with_session(|session| {
         let penalty = Penalty {
-            counts: &[true],
+            law: &[Law::Unilateral],
             multiplier: &[0.0],
             compliance: &[0.5],
             anchors: None,
@@ -78,7 +78,7 @@ fn a_step_to_the_minimum_has_its_full_length() {
 fn a_step_may_go_beyond_its_end() {
     with_session(|session| {
         let penalty = Penalty {
-            counts: &[true],
+            law: &[Law::Unilateral],
             multiplier: &[0.0],
             compliance: &[0.5],
             anchors: None,
@@ -98,9 +98,9 @@ fn a_step_may_go_beyond_its_end() {
 #[test]
 fn rows_that_do_not_count_change_nothing() {
     with_session(|session| {
-        let of = |counts: &[bool], compliance: &[f64]| {
+        let of = |law: &[Law], compliance: &[f64]| {
             let penalty = Penalty {
-                counts,
+                law,
                 multiplier: &[0.0, 0.0],
                 compliance,
                 anchors: None,
@@ -119,8 +119,8 @@ fn rows_that_do_not_count_change_nothing() {
             penalty.length(session.comm(), [&from, &to], false)
         };
         assert_eq!(
-            of(&[true, false], &[0.1, 0.0]),
-            of(&[true, false], &[0.1, 1.0])
+            of(&[Law::Unilateral, Law::Tie], &[0.1, 0.0]),
+            of(&[Law::Unilateral, Law::Tie], &[0.1, 1.0])
         );
     });
 }
@@ -132,7 +132,7 @@ fn anchors_count_along_the_step() {
         let (e, c) = ([3.0, -1.0], [0.5, 2.0]);
         let anchors = Anchors::given(vec![2.0, 0.5], vec![0.1, -0.2]);
         let penalty = Penalty {
-            counts: &[true; 2],
+            law: &[Law::Unilateral; 2],
             multiplier: &[0.0, 0.3],
             compliance: &[0.5, 0.1],
             anchors: Some(&anchors),
