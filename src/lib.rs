@@ -119,7 +119,6 @@ mod testing;
 
 #[doc(inline)]
 pub use base::{Error, Result};
-pub use contact::driver;
 #[doc(inline)]
 pub use parallel::exchange::{max_all, sum_all};
 #[doc(inline)]
@@ -149,6 +148,7 @@ pub mod error {
 #[doc(hidden)]
 pub mod inside {
     pub use crate::capi::suits as processor_suits;
+    pub use crate::contact::{driver, line_minimum};
     pub use crate::feti::cost::{forms, sizes::ProblemSizes, variation::JUMPS};
     pub use crate::feti::deflation::watch;
     pub use crate::feti::interface::sharing::DofSharing;

@@ -34,8 +34,9 @@ pub struct Augmented<'a> {
     /// ϱ, which is also ‖A‖.
     pub rho: f64,
     precondition: bool,
-    /// The face that was entered last, and its balance of forces.
+    /// The face that was entered last.
     pub face: Face<'a>,
+    /// The balance of forces in it.
     face_balance: Option<ForceBalance>,
     lambda: PetscVec,
     image: PetscVec,

@@ -1,4 +1,5 @@
-//! The inner problem of the contact loop: the equations on a set of rows, and the strategies that solve them.
+//! The problem that the driver of the contact loop goes round: who solves the equations on a set of rows, by which
+//! strategies.
 
 use super::strategy::{Course, Strategy};
 use crate::Result;
@@ -62,7 +63,7 @@ pub trait InnerProblem {
     /// Such bodies.
     fn doubt_end(&self, found: &<Self::Course as Course>::Solution) -> Result<()>;
 
-    /// Certifies the end of the loop, after so many steps, for the time `round` from 0.
+    /// Certifies the end of the loop, after so many steps, in round `round`, from 0.
     ///
     /// # Errors
     /// PETSc's own.

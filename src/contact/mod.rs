@@ -38,6 +38,7 @@ mod state;
 mod strategy;
 mod tuning;
 
+pub use piecewise_quadratic::line_minimum;
 pub use settings::{ContactSettings, ContactType};
 pub use tuning::Tuning;
 

@@ -12,12 +12,12 @@ impl<'a> CompliantRows<'a> {
         CompliantRows(method)
     }
 
-    /// Makes the rows springs with this compliance.
+    /// Makes the rows springs with this compliance. Collective.
     pub fn soften(&self, compliance: &[f64]) {
         self.0.system.set_compliance(Some(compliance.to_vec()));
     }
 
-    /// Makes the rows rigid.
+    /// Makes the rows rigid. Collective.
     pub fn rigid(&self) {
         self.0.system.set_compliance(None);
     }
@@ -50,6 +50,11 @@ impl<'a> Face<'a> {
         let held = || self.method.dual().stiffness.jump.active.clone();
         self.held.get_or_insert_with(held);
         self.method.system.set_face(free);
+    }
+
+    /// Forgets the rows that held, where other rows are set at once.
+    pub fn forget(&mut self) {
+        self.held = None;
     }
 
     /// Leaves the face: the rows hold that held before it was entered. Collective.

@@ -103,7 +103,7 @@ impl<'a> Smalbe<'a> {
 
     /// A trial of the set of the state. Collective.
     fn trial(&mut self) -> Result<ActiveSet<'a>> {
-        self.search.a.face.leave();
+        self.search.a.face.forget();
         let start = State {
             safeguarded: false,
             progress: ActiveSetProgress::default(),

@@ -1,13 +1,13 @@
 //! The constants of the contact loop.
 
-/// The constants of the contact loop, each with its unit and its reason. They decide how a loop comes to its end. Which
-/// end is a solution is the matter of the certificate, which knows the first of them only, `certified_…`.
+/// The named constants of the contact loop. They decide how a loop comes to its end. Which end is a solution is the
+/// matter of the certificate, which knows only those whose names begin with `certified`.
 ///
 /// Ten times less and more: measured on the examples with inequalities, by each method from the start (`cargo test
-/// --test contact -- --ignored --nocapture constants_ten`): 113 steps and 541 iterations of the active set, 110 and
-/// 924 of the augmented Lagrangian, 80 and 1519 of SMALBE. No answer changes with any constant. Counts are at least
-/// one. Those that change nothing there are for what the examples have not: hundreds of bodies, many rows that depend
-/// on each other, loops that come to a limit.
+/// --test contact -- --ignored --nocapture constants_ten`): 113 steps and 541 iterations of the active set, 110 and 924
+/// of the augmented Lagrangian, 80 and 1519 of SMALBE. No constant leads to another answer, and with one of them one
+/// scene is not solved. Counts are at least one. Those that change nothing there are for what the examples have not:
+/// hundreds of bodies, many rows that depend on each other, loops that come to a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Tuning {
@@ -193,7 +193,7 @@ pub struct Tuning {
     ///
     /// Ten times less or more: nothing changes.
     pub stiffest: f64,
-    /// The set hardly changes if this many rows change, or `few_of_all` of them.
+    /// The set hardly changes if this many rows change, or `few_of_all` of all, whichever is more.
     ///
     /// Ten times less: augmented Lagrangian +4 steps, +15 iterations. Ten times more: augmented Lagrangian +2 steps,
     /// +27 iterations.

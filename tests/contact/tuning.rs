@@ -170,7 +170,7 @@ fn vary(names: Vec<(&'static str, Change)>) {
     });
 }
 
-/// One of ten constants: no answer depends on them.
+/// One of twenty constants: no answer depends on them.
 #[test]
 fn constants_decide_steps_and_no_answer() {
     vary(sample(20, CONSTANTS.iter().copied()).collect());

@@ -299,7 +299,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiStepGetDisplacements(FetiFetiStep step, Pets
 
    Output Parameters:
 +  n    - the number of rows
--  rows - the rows of all ranks, on all ranks: interface by interface, obstacles behind them; valid until the next step
+-  rows - the rows of all ranks, on all ranks: interface by interface, then obstacles, then equations, whose body
+          is -1; valid until the next step
 
    Level: beginner
 
@@ -319,7 +320,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiStepGetContact(FetiFetiStep step, PetscInt *
    Level: intermediate
 
    Notes:
-   No file is written before the first step and after the last one: there is nothing to resume.
+   The next step is made ready for that: an error in it is returned here, and no step follows. No file is written before
+   anything is known, and where no step follows: there is nothing to resume.
 
    `fetifeti solve --resume` reads the file, too. The report of such a run begins with the step in which it resumes.
 

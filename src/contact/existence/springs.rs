@@ -234,7 +234,7 @@ impl<'a> Stretched<'a> {
     }
 }
 
-/// Collective.
+/// The methods are collective.
 impl PiecewiseQuadratic for Stretched<'_> {
     fn direct(&mut self) -> bool {
         let of = self.of;

@@ -14,8 +14,8 @@ use crate::substructures::Law;
 use base::linalg::dense::Dense;
 
 /// Moves the multipliers of all blocks of dependent rows downhill in cᵀλ, until rows with multipliers do not contradict
-/// each other. Forces Bᵀλ stay. cᵀN counts as zero below `level`, relative to its terms.
-pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64], level: f64) {
+/// each other. Forces Bᵀλ stay. cᵀN counts as zero below `rounding`, relative to its terms.
+pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64], rounding: f64) {
     for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
         let on: Vec<bool> = block
             .rows
@@ -29,7 +29,7 @@ pub fn ratio_test_descent(jump: &Jump, lambda: &mut [f64], level: f64) {
         let law: Vec<Law> = rows.iter().map(|&r| jump.law[r]).collect();
         let c: Vec<f64> = rows.iter().map(|&r| jump.gap[r]).collect();
         let mut own: Vec<f64> = rows.iter().map(|&r| lambda[r]).collect();
-        ratio_test_descent_at_node(&b, &law, &c, &mut own, level);
+        ratio_test_descent_at_node(&b, &law, &c, &mut own, rounding);
         rows.iter().zip(own).for_each(|(&r, l)| lambda[r] = l);
     }
 }

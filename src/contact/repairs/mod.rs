@@ -3,7 +3,7 @@
 //! | file | repair |
 //! |---|---|
 //! | [`held`] | rows are put back into a set that leaves a body loose which the load drives |
-//! | [`placed`] | bodies that nothing holds come to rest where no row is violated |
+//! | [`placed`] | bodies that nothing holds come to rest where no row is violated, or as little as possible |
 //! | [`dependent`] | rows that cannot all hold get multipliers that do not contradict each other |
 
 mod dependent;
@@ -19,7 +19,7 @@ use crate::feti::projector::balance::KernelLoad;
 use crate::feti::LinearMethod;
 use crate::Result;
 
-/// The repairs of a problem. All are collective.
+/// The repairs of a problem.
 pub(super) struct Repairs<'a> {
     method: &'a LinearMethod,
     tuning: &'a Tuning,
@@ -35,7 +35,7 @@ impl<'a> Repairs<'a> {
     }
 
     /// Puts rows into `active` so that the load drives no body away, those with the largest `score` first. Returns
-    /// their number.
+    /// their number. Collective.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.
@@ -50,7 +50,8 @@ impl<'a> Repairs<'a> {
         held::restore_coercivity(problem, dual, active, score, load, self.tuning)
     }
 
-    /// Moves bodies that nothing holds to where no row is violated. Returns the gaps B u − c of the owned rows.
+    /// Moves bodies that nothing holds to where no row is violated, or as little as possible. Returns the gaps B u − c
+    /// of the owned rows. Collective.
     ///
     /// # Errors
     /// PETSc's.

@@ -138,7 +138,8 @@ impl LinearMethod {
         })
     }
 
-    /// The solution with other multipliers that have the same forces. Collective.
+    /// The solution with other multipliers of nearly the same forces: its certificate is measured again, its status and
+    /// the estimate of its error stay. Collective.
     pub(crate) fn with_multipliers(
         &self,
         solution: LinearSolution,

@@ -114,6 +114,9 @@ def test_scenes_speak_in_exceptions(world):
         step = caught.value.step
         assert step.number == 0 and not step.converged and step.reason_name == "DIVERGED_ITS"
         assert step.displacements("low").shape == (25, 2) and next(steps, None) is None
+        # A number from the rows is one, too.
+        of_rows = step.contact["body"][0][0]
+        assert step.displacements(of_rows).shape == step.displacements(int(of_rows)).shape
         with pytest.raises(ValueError, match="there is no body 'middle', expected one of low, high"):
             step.displacements("middle")
         with pytest.raises(fetifeti.Error, match="there is no body 7"):

@@ -2,7 +2,7 @@
 
 use super::refine::Refiner;
 use base::Result;
-use fetifeti::driver::Course;
+use fetifeti::inside::driver::Course;
 use petsc::{Ksp, Vec as PetscVec};
 
 /// The certificate of a refined solution must be below this.
@@ -106,6 +106,8 @@ pub struct SetState {
     pub priority: Vec<usize>,
     /// Why a method that converges is needed.
     pub trouble: Option<&'static str>,
+    /// The wrong rows of the set before, where this set is to be tried before that method is asked.
+    pub fewest: Option<usize>,
 }
 
 /// Numbers of one step.

@@ -30,6 +30,8 @@ use super::groups::ActiveGroups;
 use super::reduced::Reduced;
 use super::rows::{GapInequality, Inequalities};
 use base::Result;
+use fetifeti::inside::line_minimum;
+use fetifeti::settings::Tuning;
 use parallel::meter::timed;
 use petsc::{Session, Vec as PetscVec};
 
@@ -333,7 +335,7 @@ impl LineSearch {
     /// The first of t = 1, ½, ¼, … at which ψ falls by [`ENOUGH`] of what the best t in (0, 1] brings; `None` if ψ does
     /// not fall. The best t lies at a kink, where a row begins or ends to hold, and steps from kink to kink are short.
     fn length(&self) -> Option<f64> {
-        let best = self.minimum()?.min(1.0);
+        let best = self.minimum()?;
         let fall = self.change(best);
         let mut t = 1.0;
         while t > best && self.change(t) > ENOUGH * fall {
@@ -342,22 +344,9 @@ impl LineSearch {
         Some(best.max(t))
     }
 
-    /// The t that minimises ψ; `None` if ψ does not fall.
+    /// The t in (0, 1] that minimises ψ; `None` if ψ does not fall.
     fn minimum(&self) -> Option<f64> {
-        // ψ' is linear between the t at which some s is zero.
-        let zero = |r: usize| -self.pull[r] / (self.springs[r] * self.opening[r]);
-        let mut ends: Vec<f64> = (0..self.pull.len()).map(zero).collect();
-        ends.retain(|t| t.is_finite() && *t > 0.0);
-        ends.sort_by(f64::total_cmp);
-        let below = ends.partition_point(|t| self.slope(*t)[0] < 0.0);
-        let from = if below > 0 { ends[below - 1] } else { 0.0 };
-        let inside = match ends.get(below) {
-            Some(end) => 0.5 * (from + end),
-            None => from + 1.0,
-        };
-        let [slope, curvature] = self.slope(inside);
-        let t = inside - slope / curvature;
-        (self.fall > 0.0 && t.is_finite() && t > 0.0).then_some(t)
+        line_minimum(|t| self.slope(t), false, &Tuning::DEFAULT)
     }
 }
 

@@ -49,6 +49,13 @@ pub(super) struct Solved {
 }
 
 impl Solved {
+    /// Whether the loop may end with this set, which stays or is `right` all the same; and whether the last row that
+    /// holds a body pulls there.
+    pub fn settles(&self, right: bool) -> [bool; 2] {
+        let settled = (self.stays() || right) && self.to_the_end;
+        [settled && self.held, settled && !self.held]
+    }
+
     /// Whether the set follows from itself.
     pub fn stays(&self) -> bool {
         self.next == self.active
@@ -60,6 +67,7 @@ impl Solved {
             priority: self.judged.priority(&self.active, &self.next),
             active: self.next,
             trouble: None,
+            fewest: None,
         }
     }
 }
@@ -68,12 +76,12 @@ impl Solved {
 pub(super) struct Equations<'a> {
     session: &'a Session,
     rows: &'a Inequalities,
-    pub reduced: &'a Reduced,
+    reduced: &'a Reduced,
     pub solvers: &'a mut Solvers<'a>,
     tolerances: Tolerances,
     solve: OuterSolve<'a>,
     /// The present u, the start of the next solve.
-    pub u: PetscVec,
+    u: PetscVec,
     ksp: Option<Ksp>,
     /// The active set for which the preconditioner was built.
     built: Vec<bool>,
@@ -113,7 +121,10 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Takes the first solver.
+    /// Takes the first solver. Collective.
+    ///
+    /// # Errors
+    /// Those of its source.
     pub fn start(&mut self) -> Result<()> {
         self.ksp = Some((self.solvers)()?);
         Ok(())
@@ -129,7 +140,10 @@ impl<'a> Equations<'a> {
         self.groups = Some(solved.groups);
     }
 
-    /// The next solve begins at `u`, with a preconditioner of its own.
+    /// The next solve begins at `u`, with a preconditioner of its own. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
     pub fn restart(&mut self, u: &PetscVec) -> Result<()> {
         self.built.clear();
         self.u.copy_from(u)

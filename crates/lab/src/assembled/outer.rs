@@ -18,7 +18,7 @@ use super::rows::Inequalities;
 use super::sets::WanderingSets;
 use super::trials::Trials;
 use base::Result;
-use fetifeti::driver::{self, Begin, Begun, InnerProblem, Verdict};
+use fetifeti::inside::driver::{self, Begin, Begun, InnerProblem, Verdict};
 use petsc::Session;
 
 /// The assembled problem.
@@ -51,6 +51,7 @@ impl InnerProblem for AssembledRows<'_> {
                         .map_or_else(|| self.rows.initial.clone(), <[bool]>::to_vec),
                     priority: (0..self.rows.len()).collect(),
                     trouble: None,
+                    fewest: None,
                 };
                 let is_given = self.given.is_some();
                 Box::new(WanderingSets::new(&self.equations, state, is_given))

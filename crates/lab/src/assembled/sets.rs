@@ -12,7 +12,7 @@ use super::course::{ActiveSetEnd, AssembledCourse, OuterEnd, OuterStep, SetState
 use super::equations::{Equations, Manner, Solved};
 use super::groups::MultiplierSigns;
 use base::Result;
-use fetifeti::driver::{Checkpoint, Proposal, Strategy};
+use fetifeti::inside::driver::{Checkpoint, Proposal, Strategy};
 
 /// Number of steps after which the sets come from the method that converges.
 const STEPS: usize = 200;
@@ -36,6 +36,8 @@ pub(super) struct WanderingSets<'a, 'm> {
     caution: Caution,
     visited: HashSet<Vec<bool>>,
     steps: usize,
+    /// The wrong rows of the set before.
+    fewest: usize,
     last: Option<Solved>,
 }
 
@@ -54,21 +56,25 @@ impl<'a, 'm> WanderingSets<'a, 'm> {
             caution: Caution::Loose,
             visited: HashSet::new(),
             steps: 0,
+            fewest: 0,
             last: None,
         }
+    }
+
+    /// Whether the certificate of a careful step holds: sets that come back differ only in rows that rounding decides.
+    fn is_right(&self, solved: &Solved, refined: bool) -> bool {
+        refined && self.caution != Caution::Loose && solved.certificate.holds()
     }
 
     /// The end of the loop at this solution, if it is one.
     fn end(&self, solved: &Solved, refined: bool) -> Option<OuterEnd> {
         let (reason, failed) = solved.reason.clone();
-        // Sets that come back differ only in rows that rounding decides.
-        let right = refined && self.caution != Caution::Loose && solved.certificate.holds();
-        let settled = solved.stays() || right;
+        let [settled, _] = solved.settles(self.is_right(solved, refined));
         if failed {
             Some((false, reason))
         } else if self.is_given {
             Some((!refined || solved.met, reason))
-        } else if settled && solved.to_the_end && solved.held {
+        } else if settled {
             Some((solved.met, reason))
         } else {
             None
@@ -77,8 +83,7 @@ impl<'a, 'm> WanderingSets<'a, 'm> {
 
     /// Moves on to the next set.
     fn advance(&mut self, solved: Solved, refined: bool) {
-        let right = refined && self.caution != Caution::Loose && solved.certificate.holds();
-        let loose = (solved.stays() || right) && solved.to_the_end && !solved.held;
+        let [_, loose] = solved.settles(self.is_right(&solved, refined));
         self.tight = solved.stays() && !loose;
         if self.tight {
             self.equations.borrow_mut().again(solved);
@@ -99,8 +104,12 @@ impl<'a, 'm> WanderingSets<'a, 'm> {
             };
             self.visited.clear();
         }
+        let wrong = solved.judged.count();
+        let better = solved.held && wrong < self.fewest;
+        self.fewest = wrong;
         self.state = solved.following();
         self.state.trouble = trouble;
+        self.state.fewest = better.then_some(wrong);
     }
 }
 

@@ -13,7 +13,7 @@ use super::groups::MultiplierSigns;
 use super::reduced::Reduced;
 use super::rows::Inequalities;
 use base::Result;
-use fetifeti::driver::{Proposal, Strategy};
+use fetifeti::inside::driver::{Proposal, Strategy};
 use petsc::Session;
 
 /// The strategy.
@@ -42,11 +42,8 @@ impl<'a, 'm> Trials<'a, 'm> {
             equations,
             search: DampedNewton::new(session, rows, reduced)?,
             why: state.trouble.unwrap_or("DIVERGED_CONTACT_ITS"),
-            state: SetState {
-                trouble: None,
-                ..state
-            },
-            fewest: None,
+            fewest: state.fewest,
+            state,
             last: None,
         })
     }
@@ -54,10 +51,10 @@ impl<'a, 'm> Trials<'a, 'm> {
     /// The end of the loop at this solution, if it is one or nothing is left to try.
     fn end(&self, solved: &Solved, worse: bool) -> Option<OuterEnd> {
         let (reason, failed) = solved.reason.clone();
-        let settled = solved.stays() || solved.certificate.holds();
+        let [settled, _] = solved.settles(solved.certificate.holds());
         if failed {
             Some((false, reason))
-        } else if settled && solved.to_the_end && solved.held {
+        } else if settled {
             Some((solved.met, reason))
         } else if worse && self.search.is_exhausted() {
             Some((false, self.why.to_string()))
@@ -100,12 +97,7 @@ impl Strategy<AssembledCourse> for Trials<'_, '_> {
             self.last = Some(solved);
             return Ok((step, Proposal::End(end)));
         }
-        let settled = solved.stays() || solved.certificate.holds();
-        let loose = settled && solved.to_the_end && !solved.held;
-        if solved.stays() && !loose {
-            self.fewest = Some(fewest);
-            equations.again(solved);
-        } else if worse {
+        if worse {
             self.fewest = None;
         } else {
             self.fewest = Some(wrong);

@@ -44,7 +44,8 @@ fn line() -> LineSearch {
 fn a_step_takes_the_energy_down() {
     let line = line();
     let best = line.minimum().expect("it falls");
-    assert!(slope_of(&line, best).abs() < 1e-12, "{best}");
+    // The length is exact to 1e-12, and ψ'' is some tens.
+    assert!(slope_of(&line, best).abs() < 1e-10, "{best}");
     assert!((line.slope(0.3)[0] - slope_of(&line, 0.3)).abs() < 1e-12);
     for t in [0.05, best, 0.5, 1.0] {
         let (change, expected) = (line.change(t), change_of(&line, t));

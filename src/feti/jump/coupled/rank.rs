@@ -4,6 +4,8 @@
 //! dependent when the others are left out, although all rows together are as well conditioned as can be. Rounding then
 //! grows until a row that depends on others seems not to.
 
+use rustc_hash::FxHashMap;
+
 use super::pattern::JumpMatrices;
 
 /// A row follows from others if less than this part of its largest entry is left of it. Rounding leaves 1e-15, but B_D
@@ -29,19 +31,31 @@ struct Open {
     size: f64,
     /// The rest of it: (dof, value), by increasing dof.
     left: Vec<(u32, f64)>,
+    /// The largest entry that is left, relative to the size of the row.
+    largest: f64,
     /// Pivot rows that were subtracted: (step, factor).
     less: Vec<(usize, f64)>,
 }
 
 impl Open {
-    /// The largest entry that is left, relative to the size of the row.
-    fn largest(&self) -> f64 {
-        let left = self.left.iter();
-        left.fold(0.0f64, |a, e| a.max(e.1.abs())) / self.size
+    fn new(row: u32, left: Vec<(u32, f64)>) -> Open {
+        Open {
+            row,
+            size: largest(&left),
+            left,
+            largest: 1.0,
+            less: Vec::new(),
+        }
     }
 
-    /// Subtracts the pivot row of this step, whose pivot is entry `at`. Afterwards the dof of the pivot is gone.
-    fn subtract(&mut self, step: usize, pivot: &[(u32, f64)], at: usize) {
+    /// Subtracts the pivot row of this step, whose pivot is entry `at`. Afterwards the dof of the pivot is gone. `met`
+    /// gets the dofs that are new in the row.
+    fn subtract(
+        &mut self,
+        step: usize,
+        (pivot, at): (&[(u32, f64)], usize),
+        met: &mut impl FnMut(u32),
+    ) {
         let (dof, value) = pivot[at];
         let Ok(own) = self.left.binary_search_by_key(&dof, |e| e.0) else {
             return;
@@ -53,68 +67,86 @@ impl Open {
             while let Some(before) = mine.next_if(|e| e.0 < j) {
                 out.push(before);
             }
-            let here = mine.next_if(|e| e.0 == j).map_or(0.0, |e| e.1);
-            if j != dof {
-                out.push((j, here - factor * v));
+            let here = mine.next_if(|e| e.0 == j).map(|e| e.1);
+            if j == dof {
+                continue;
             }
+            if here.is_none() {
+                met(j);
+            }
+            out.push((j, here.unwrap_or(0.0) - factor * v));
         }
         out.extend(mine);
         self.left = out;
+        self.largest = largest(&self.left) / self.size;
         self.less.push((step, factor));
     }
 }
 
+/// The largest absolute value.
+fn largest(entries: &[(u32, f64)]) -> f64 {
+    entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()))
+}
+
 /// The rows in `on` that follow from the others in `on`; without them these are independent.
 pub fn dependent(b: &JumpMatrices, on: &[bool]) -> Vec<DependentRow> {
-    let open = (0..on.len()).filter(|&r| on[r]).map(|r| {
+    let rows = (0..on.len()).filter(|&r| on[r]).map(|r| {
         let (col, val) = b.rows.row(r);
-        Open {
-            row: r as u32,
-            size: val.iter().fold(0.0, |a, v| a.max(v.abs())),
-            left: col.iter().copied().zip(val.iter().copied()).collect(),
-            less: Vec::new(),
-        }
+        let entries = col.iter().copied().zip(val.iter().copied());
+        Open::new(r as u32, entries.collect())
     });
-    let (mut open, empty): (Vec<Open>, Vec<Open>) = open.partition(|row| row.size > 0.0);
-    let mut pivots: Vec<Open> = Vec::new();
+    let (mut rows, empty): (Vec<Open>, Vec<Open>) = rows.partition(|row| row.size > 0.0);
+    // The rows that have, or have had, a dof.
+    let mut users: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+    for (i, row) in rows.iter().enumerate() {
+        row.left
+            .iter()
+            .for_each(|e| users.entry(e.0).or_default().push(i));
+    }
+    let mut open: Vec<usize> = (0..rows.len()).collect();
+    let mut pivots: Vec<usize> = Vec::new();
     loop {
-        let largest: Vec<f64> = open.iter().map(Open::largest).collect();
-        let most = largest.iter().copied().fold(0.0, f64::max);
+        let most = open.iter().map(|&i| rows[i].largest).fold(0.0, f64::max);
         if most <= FOLLOWS {
             break;
         }
-        let good = (0..open.len()).filter(|&i| largest[i] >= THRESHOLD * most);
-        let sparsest = good.min_by_key(|&i| (open[i].left.len(), open[i].row));
-        let pivot = open.swap_remove(sparsest.expect("the largest one is good"));
+        let good = (0..open.len()).filter(|&k| rows[open[k]].largest >= THRESHOLD * most);
+        let sparsest = good.min_by_key(|&k| (rows[open[k]].left.len(), rows[open[k]].row));
+        let chosen = open.swap_remove(sparsest.expect("the largest one is good"));
+        let pivot = rows[chosen].left.clone();
         let by_size = |&i: &usize, &j: &usize| {
-            let size = |i: usize| pivot.left[i].1.abs();
+            let size = |i: usize| pivot[i].1.abs();
             size(i).total_cmp(&size(j)).then(j.cmp(&i))
         };
-        let at = (0..pivot.left.len()).max_by(by_size);
+        let at = (0..pivot.len()).max_by(by_size);
         let at = at.expect("something is left of the row");
         let step = pivots.len();
-        for row in &mut open {
-            row.subtract(step, &pivot.left, at);
+        pivots.push(chosen);
+        rows[chosen].largest = -1.0;
+        for i in users.remove(&pivot[at].0).unwrap_or_default() {
+            // A row that is a pivot itself stays as it is.
+            if rows[i].largest < 0.0 {
+                continue;
+            }
+            let mut met = |dof| users.entry(dof).or_default().push(i);
+            rows[i].subtract(step, (&pivot, at), &mut met);
         }
-        pivots.push(pivot);
     }
-    let mut out: Vec<DependentRow> = open
-        .iter()
-        .chain(&empty)
-        .map(|d| combined(d, &pivots))
-        .collect();
+    let dependent = open.iter().map(|&i| &rows[i]).chain(&empty);
+    let mut out: Vec<DependentRow> = dependent.map(|d| combined(d, (&rows, &pivots))).collect();
     out.sort_by_key(|d| d.row);
     out
 }
 
 /// A row of which nothing is left, as a combination of rows of B: pivot row = row of B − Σ factor · earlier pivot row.
-fn combined(dependent: &Open, pivots: &[Open]) -> DependentRow {
+fn combined(dependent: &Open, (rows, pivots): (&[Open], &[usize])) -> DependentRow {
     let mut factors = vec![0.0; pivots.len()];
     for &(step, factor) in &dependent.less {
         factors[step] += factor;
     }
     let mut combination = Vec::new();
-    for (step, pivot) in pivots.iter().enumerate().rev() {
+    for (step, &pivot) in pivots.iter().enumerate().rev() {
+        let pivot = &rows[pivot];
         let factor = factors[step];
         if factor == 0.0 {
             continue;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
@@ -80,6 +81,8 @@ class LoadStep:
         return self.reason > 0
 
     def _present(self) -> Any:
+        if not self._steps._handle:
+            raise ValueError(f"load step {self.number} was given back with its steps")
         if self._steps._step is not self:
             raise ValueError(
                 f"load step {self.number} is no longer the present one, expected its arrays to be read before the "
@@ -121,7 +124,8 @@ class LoadStep:
     def checkpoint(self, file: str | Path) -> None:
         """Writes where the steps stand to a file, from which ``scene.steps(resume=file)`` goes on. Collective.
 
-        After the last step nothing is written. ``fetifeti solve --resume`` reads the file, too.
+        The next step is made ready for that: an error in it is raised here, and no step follows. Where none follows
+        anyway, nothing is written. ``fetifeti solve --resume`` reads the file, too.
         """
         with _as_the_program():
             call("FetiFetiStepCheckpoint", self._present(), str(file))
@@ -160,7 +164,11 @@ class LoadSteps(Iterator[LoadStep]):
             call("FetiFetiStepCreateFortran", self.comm.fortran, str(scene.path), ctypes.byref(self._handle))
             self.bodies = [self._name(body) for body in range(self._get("GetBodies", ctypes.c_int()))]
             if resume is not None:
-                call("FetiFetiStepResume", self._handle, str(resume))
+                try:
+                    call("FetiFetiStepResume", self._handle, str(resume))
+                except Error:
+                    self.destroy()
+                    raise
 
     def __next__(self) -> LoadStep:
         solved = ctypes.c_int()
@@ -215,8 +223,8 @@ class LoadSteps(Iterator[LoadStep]):
         return nodes.value, components.value
 
     def _number(self, body: int | str) -> int:
-        if isinstance(body, int):
-            return body
+        if not isinstance(body, str):
+            return operator.index(body)
         if body not in self.bodies:
             raise ValueError(f"there is no body '{body}', expected one of {', '.join(self.bodies)}")
         return self.bodies.index(body)
