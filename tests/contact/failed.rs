@@ -146,3 +146,18 @@ fn rows_that_depend_on_each_other_do_not_pull() {
         assert!(solved > 0);
     });
 }
+
+/// A body on four rows of contact, whose equations have a first residual of rounding: PETSc's absolute tolerance of
+/// 1e-50 is no small part of it. Displacements far from equilibrium are no solution all the same.
+#[test]
+fn a_first_residual_of_rounding_makes_no_solution() {
+    with_session(|session| {
+        let scene = Scene::load("../../tests/data/loose_face.toml").expect("a good scene");
+        let problem = scene.substructures(&|_| true).expect("a good scene");
+        let mut solver = FetiFeti::new(session, problem, Settings::from(MethodSettings::default()))
+            .expect("the set-up works");
+        let solution = solver.solve().expect("an end");
+        let far = solution.kkt.stationarity > 1e-2;
+        assert!(!(far && solution.converged()), "{:?}", solution.kkt);
+    });
+}

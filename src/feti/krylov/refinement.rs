@@ -76,11 +76,12 @@ impl LinearMethod {
         Ok(solution)
     }
 
-    /// The tolerance relative to the first residual: an absolute tolerance may be the larger one.
+    /// The tolerance relative to the first residual: an absolute tolerance may be the larger one. A first residual of
+    /// rounding says nothing: beside it any absolute tolerance, PETSc's 1e-50 too, would allow everything. Collective.
     pub(super) fn relative_tolerance(&self, solution: &LinearSolution) -> Result<f64> {
         let (rtol, atol, _, _) = self.ksp.tolerances()?;
         Ok(match solution.residuals.first() {
-            Some(&first) if first > 0.0 => rtol.max(atol / first),
+            Some(&first) if first > 0.0 => rtol.max(atol / first.max(self.least_residual())),
             _ => rtol,
         })
     }
