@@ -41,27 +41,35 @@ pub trait InnerProblem {
         begin: Begin<<Self::Course as Course>::State>,
     ) -> Result<Begun<'a, Self::Course>>;
 
-    /// Why a loop may take no further step from this state; `None` if it may.
+    /// Why a loop may take no further step from this state; `None` if it may, as where strategies end by themselves.
     fn stop(
         &self,
-        state: &<Self::Course as Course>::State,
-    ) -> Option<<Self::Course as Course>::End>;
+        _state: &<Self::Course as Course>::State,
+    ) -> Option<<Self::Course as Course>::End> {
+        None
+    }
 
     /// Whether the question if there is a solution is due after so many steps of a strategy.
-    fn is_doubtful(&self, steps: usize) -> bool;
+    fn is_doubtful(&self, _steps: usize) -> bool {
+        false
+    }
 
     /// Asks whether there is a solution: an error names bodies which the load pushes away for ever. `at` is where the
-    /// loop is.
+    /// loop is. By itself a problem does not ask: a loop that finds nothing says so.
     ///
     /// # Errors
     /// Such bodies.
-    fn doubt(&self, at: &<Self::Course as Course>::State) -> Result<()>;
+    fn doubt(&self, _at: &<Self::Course as Course>::State) -> Result<()> {
+        Ok(())
+    }
 
     /// Asks whether there is a solution where a loop has ended, if it has found none.
     ///
     /// # Errors
     /// Such bodies.
-    fn doubt_end(&self, found: &<Self::Course as Course>::Solution) -> Result<()>;
+    fn doubt_end(&self, _found: &<Self::Course as Course>::Solution) -> Result<()> {
+        Ok(())
+    }
 
     /// Certifies the end of the loop, after so many steps, in round `round`, from 0.
     ///
@@ -77,7 +85,9 @@ pub trait InnerProblem {
     /// The solution of a loop that has gone on from a certified one: iterations and seconds of both.
     fn joined(
         &self,
-        before: &<Self::Course as Course>::Solution,
+        _before: &<Self::Course as Course>::Solution,
         next: <Self::Course as Course>::Solution,
-    ) -> <Self::Course as Course>::Solution;
+    ) -> <Self::Course as Course>::Solution {
+        next
+    }
 }

@@ -121,19 +121,13 @@ impl LinearMethod {
             *u += du;
         }
         lambda.axpy(1.0, &at.lambda)?;
-        let certificate = Certificate::new(problem, dual, &u, &lambda, self.length.get())?;
-        let solution = LinearSolution {
+        let next = LinearSolution {
             u,
-            lambda: lambda.to_vec()?,
-            gaps: certificate.gaps,
-            kkt: certificate.kkt,
-            energy: certificate.energy,
-            left: certificate.left,
             iterations: solution.iterations + run.iterations,
             ..solution.clone()
         };
         Ok(Corrected {
-            solution,
+            solution: self.measured(next, &lambda)?,
             size,
             converged: run.status.converged(),
         })
@@ -146,19 +140,22 @@ impl LinearMethod {
         solution: LinearSolution,
         other: Vec<f64>,
     ) -> Result<LinearSolution> {
-        let dual = &*self.dual();
-        let lambda = dual.multipliers()?;
+        let lambda = self.dual().multipliers()?;
         lambda.array_mut()?.copy_from_slice(&other);
-        let (u, known) = (&solution.u, self.length.get());
-        let certificate = Certificate::new(&self.problem, dual, u, &lambda, known)?;
         let error = solution.kkt.error;
+        let mut measured = self.measured(solution, &lambda)?;
+        measured.kkt.error = error;
+        Ok(measured)
+    }
+
+    /// A solution with the multipliers `lambda` and the certificate of its displacements with them. Collective.
+    fn measured(&self, solution: LinearSolution, lambda: &PetscVec) -> Result<LinearSolution> {
+        let (u, known) = (&solution.u, self.length.get());
+        let certificate = Certificate::new(&self.problem, &self.dual(), u, lambda, known)?;
         Ok(LinearSolution {
-            lambda: other,
+            lambda: lambda.to_vec()?,
             gaps: certificate.gaps,
-            kkt: Kkt {
-                error,
-                ..certificate.kkt
-            },
+            kkt: certificate.kkt,
             energy: certificate.energy,
             left: certificate.left,
             ..solution

@@ -9,9 +9,7 @@
 
 use std::cell::RefCell;
 
-use super::course::{
-    ActiveSetEnd, AssembledCourse, OuterEnd, OuterSolve, SetState, Solvers, Tolerances,
-};
+use super::course::{ActiveSetEnd, AssembledCourse, OuterSolve, SetState, Solvers, Tolerances};
 use super::equations::Equations;
 use super::reduced::Reduced;
 use super::rows::Inequalities;
@@ -35,16 +33,13 @@ impl InnerProblem for AssembledRows<'_> {
     type Course = AssembledCourse;
 
     fn begin<'a>(&'a self, begin: Begin<SetState>) -> Result<Begun<'a, AssembledCourse>> {
-        let mut equations = self.equations.borrow_mut();
         Ok(match begin {
             Begin::HandOver(state) => {
                 let search = (self.session, self.rows, self.reduced);
-                drop(equations);
                 Box::new(Trials::new(search, &self.equations, state)?)
             }
             Begin::First(_) | Begin::Again(_) => {
-                equations.start()?;
-                drop(equations);
+                self.equations.borrow_mut().start()?;
                 let state = SetState {
                     active: self
                         .given
@@ -59,31 +54,9 @@ impl InnerProblem for AssembledRows<'_> {
         })
     }
 
-    /// The strategies end by themselves.
-    fn stop(&self, _: &SetState) -> Option<OuterEnd> {
-        None
-    }
-
-    fn is_doubtful(&self, _: usize) -> bool {
-        false
-    }
-
-    /// A loop that finds nothing says so; why is for others to find out.
-    fn doubt(&self, _: &SetState) -> Result<()> {
-        Ok(())
-    }
-
-    fn doubt_end(&self, _: &ActiveSetEnd) -> Result<()> {
-        Ok(())
-    }
-
     /// Every set has its certificate.
     fn certify(&self, found: ActiveSetEnd, _: usize, _: usize) -> Result<Verdict<AssembledCourse>> {
         Ok(Verdict::Done(found))
-    }
-
-    fn joined(&self, _: &ActiveSetEnd, next: ActiveSetEnd) -> ActiveSetEnd {
-        next
     }
 }
 
