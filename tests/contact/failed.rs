@@ -147,17 +147,29 @@ fn rows_that_depend_on_each_other_do_not_pull() {
     });
 }
 
-/// A body on four rows of contact, whose equations have a first residual of rounding: PETSc's absolute tolerance of
-/// 1e-50 is no small part of it. Displacements far from equilibrium are no solution all the same.
+/// A body on a flat side, with one subdomain that is nearly incompressible: R along the side has rounding of 1e-12, which
+/// is no hold. Nor is a solve with a first residual of rounding, which this has, a solution whatever it comes to.
 #[test]
-fn a_first_residual_of_rounding_makes_no_solution() {
+fn a_body_is_free_along_a_flat_side() {
     with_session(|session| {
         let scene = Scene::load("../../tests/data/loose_face.toml").expect("a good scene");
         let problem = scene.substructures(&|_| true).expect("a good scene");
         let mut solver = FetiFeti::new(session, problem, Settings::from(MethodSettings::default()))
             .expect("the set-up works");
         let solution = solver.solve().expect("an end");
-        let far = solution.kkt.stationarity > 1e-2;
-        assert!(!(far && solution.converged()), "{:?}", solution.kkt);
+        assert!(solution.converged(), "{}", solution.status);
+        assert!(solution.kkt.stationarity < 1e-9, "{:?}", solution.kkt);
+        // All three methods have this energy, and the body has not gone far along its side.
+        assert!(
+            near(solution.energy, -0.2150363594394, 1e-9),
+            "{}",
+            solution.energy
+        );
+        let far = solution
+            .u
+            .iter()
+            .flatten()
+            .fold(0.0f64, |a, u| a.max(u.abs()));
+        assert!(far < 10.0, "{far}");
     });
 }
