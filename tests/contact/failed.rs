@@ -147,8 +147,8 @@ fn rows_that_depend_on_each_other_do_not_pull() {
     });
 }
 
-/// A body on a flat side, with one subdomain that is nearly incompressible: R along the side has rounding of 1e-12, which
-/// is no hold. Nor is a solve with a first residual of rounding, which this has, a solution whatever it comes to.
+/// A body on a flat side, with one subdomain that is nearly incompressible: R along the side has rounding of 1e-12,
+/// which is no hold. Nor is a solve with a first residual of rounding, which this has, a solution whatever it comes to.
 #[test]
 fn a_body_is_free_along_a_flat_side() {
     with_session(|session| {
