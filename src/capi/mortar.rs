@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::surface::HostSurface;
-use crate::substructures::Law;
+use crate::substructures::{Law, SentLaw};
 use crate::Result;
 use base::Fault;
 use bytemuck::{bytes_of, Pod, Zeroable};
@@ -142,7 +142,7 @@ impl HostSurfaces<'_> {
     fn sent(&self, given: &GivenMortar<'_>) -> Parcels<MortarFacts, MortarNode> {
         let facts = MortarFacts {
             surfaces: given.surfaces,
-            law: given.law.code().into(),
+            law: given.law.sent(),
             reach: given.reach,
             adjust: given.adjust,
             gap: given.gap,
@@ -167,7 +167,7 @@ impl HostSurfaces<'_> {
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct MortarFacts {
     surfaces: [i32; 2],
-    law: u64,
+    law: SentLaw,
     reach: f64,
     adjust: f64,
     gap: f64,

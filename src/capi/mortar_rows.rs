@@ -8,7 +8,6 @@ use super::object::Object;
 use super::rows::RowOrigin;
 use super::surface::HostSurface;
 use crate::embed::{GivenResults, GivenRow};
-use crate::substructures::Law;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::Fault;
@@ -97,19 +96,15 @@ impl Object {
         let mut known = self.known(held, &numbers)?;
         out.counts = vec![MultiplierCounts::default(); self.mortars.len()];
         // Ties come first: nodes that they hold are not in contact.
-        for law in Law::ALL {
-            for (m, mortar) in self
-                .mortars
-                .iter()
-                .enumerate()
-                .filter(|(_, m)| m.law == law)
-            {
+        for inequality in [false, true] {
+            let mortars = self.mortars.iter().enumerate();
+            for (m, mortar) in mortars.filter(|(_, m)| m.law.is_inequality() == inequality) {
                 let pair = MortarPair {
                     mortar,
                     sides: mortar.surfaces.map(|s| &self.surfaces[s]),
                     numbers: mortar.surfaces.map(|s| &numbers[s]),
                 };
-                let made = if law.is_inequality() {
+                let made = if inequality {
                     pair.contacts(&known)
                 } else {
                     pair.ties(&known)
@@ -123,7 +118,7 @@ impl Object {
                     )));
                 }
                 for (row, component, area, node) in made {
-                    if !law.is_inequality() {
+                    if !inequality {
                         known.tied.extend(pair.numbers[0][node as usize][component]);
                     }
                     if pair.sides[0].giver[node as usize] == self.session.rank() {

@@ -3,7 +3,7 @@
 use super::parts::body_dof;
 use super::torn::GivenRow;
 use super::touched::{Holder, Touched};
-use crate::substructures::{BodyNode, Law, Row, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Law, Row, RowLabel, RowSource, SentLaw};
 use bytemuck::{Pod, Zeroable};
 use parallel::parcels::Parcels;
 use std::collections::BTreeMap;
@@ -35,8 +35,8 @@ pub struct LocatedTerm {
 pub struct SentRow {
     number: usize,
     gap: f64,
-    law: u32,
-    block: u32,
+    law: SentLaw,
+    block: u64,
 }
 
 impl LocatedTerm {
@@ -88,8 +88,8 @@ impl LocatedRow {
         let row = SentRow {
             number: self.number,
             gap: self.gap,
-            law: self.law.code(),
-            block: self.block,
+            law: self.law.sent(),
+            block: self.block.into(),
         };
         to.push(row, self.terms.iter().copied());
     }
@@ -98,9 +98,9 @@ impl LocatedRow {
     pub fn received((row, terms): (SentRow, &[LocatedTerm])) -> LocatedRow {
         LocatedRow {
             number: row.number,
-            law: Law::of_code(row.law).expect("a law that a rank has sent"),
+            law: row.law.law(),
             gap: row.gap,
-            block: row.block,
+            block: row.block as u32,
             terms: terms.to_vec(),
         }
     }

@@ -10,7 +10,7 @@ use super::solver::{ContactEnd, Embedded, GivenResults};
 use super::torn::GivenRow;
 use super::touched::RankProblem;
 use crate::feti::Numbers;
-use crate::substructures::{BodyNode, Law, Row, RowLabel, RowSource};
+use crate::substructures::{BodyNode, Row, RowLabel, RowSource};
 use crate::{FetiFeti, Result};
 use base::linalg::csr::Csr;
 use base::ErrorKind;
@@ -39,7 +39,7 @@ struct ContactStart {
 }
 
 /// The subject of a row of the host: the node of its first term, its kind, and its number among the rows with these.
-type Subject = (u32, Law, usize);
+type Subject = (u32, u64, usize);
 
 impl Embedded {
     /// Whether a MATIS has the layout and the block size of the one that was set up. Collective.
@@ -209,12 +209,12 @@ impl Embedded {
 
 /// The subject of each given row.
 fn subjects(given: &[GivenRow], block_size: usize) -> Vec<Subject> {
-    let mut seen: HashMap<(u32, Law), usize> = HashMap::new();
+    let mut seen: HashMap<(u32, u64), usize> = HashMap::new();
     let one = |row: &GivenRow| {
         let node = row.terms.first().map_or(0, |t| t.0) / block_size as u32;
-        let count = seen.entry((node, row.law)).or_default();
+        let count = seen.entry((node, row.law.kind())).or_default();
         *count += 1;
-        (node, row.law, *count)
+        (node, row.law.kind(), *count)
     };
     given.iter().map(one).collect()
 }

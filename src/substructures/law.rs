@@ -9,11 +9,12 @@
 //! the force of a spring that stands for the row. This file alone matches on the law: the linear method, the contact
 //! loop and the certificate ask it.
 
+use bytemuck::{Pod, Zeroable};
 use std::fmt;
 
 /// The law of a row. Multipliers and gaps are in the units of the problem: a multiplier is a force, a gap B u − c a
 /// displacement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Law {
     /// An equation: (B u)_r = c_r, with any multiplier.
@@ -35,21 +36,40 @@ pub enum RowState {
     Tied,
 }
 
-impl Law {
-    /// All laws, in the order of their [`code`](Law::code).
-    pub const ALL: [Law; 2] = [Law::Tie, Law::Unilateral];
+/// A law on its way between ranks.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SentLaw {
+    /// Its [`kind`](Law::kind).
+    kind: u64,
+}
 
-    /// A number for the law, as ranks, files and the C interface tell each other.
-    pub fn code(self) -> u32 {
+impl SentLaw {
+    /// The law that was sent.
+    pub fn law(self) -> Law {
+        Law::of_kind(self.kind).expect("a law that a rank has sent")
+    }
+}
+
+impl Law {
+    /// A number for the kind of law: the FetiFetiRowKind of the C interface, and a key where laws are told apart.
+    pub fn kind(self) -> u64 {
         match self {
             Law::Tie => 0,
             Law::Unilateral => 1,
         }
     }
 
-    /// The law with this [`code`](Law::code); `None` if there is none.
-    pub fn of_code(code: u32) -> Option<Law> {
-        Law::ALL.into_iter().find(|law| law.code() == code)
+    /// The law of this [`kind`](Law::kind); `None` if there is none.
+    pub fn of_kind(kind: u64) -> Option<Law> {
+        [Law::Tie, Law::Unilateral]
+            .into_iter()
+            .find(|law| law.kind() == kind)
+    }
+
+    /// The law as ranks send it.
+    pub fn sent(self) -> SentLaw {
+        SentLaw { kind: self.kind() }
     }
 
     /// Whether the contact loop decides if the row holds. A row of another law holds as the problem says.

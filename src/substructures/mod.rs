@@ -9,7 +9,7 @@ mod law;
 mod rows;
 
 pub use idle::Idle;
-pub use law::{Law, RowState};
+pub use law::{Law, RowState, SentLaw};
 pub use rows::{BodyNode, Row, RowLabel, RowSource, SolvedRow};
 
 use std::sync::Arc;

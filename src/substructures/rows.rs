@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::law::{Law, RowState};
+use super::law::{Law, RowState, SentLaw};
 use base::linalg::sorted::distinct;
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{exchange, gather_all};
@@ -248,8 +248,8 @@ impl SolvedRow {
 struct SentRow {
     source: [usize; 2],
     block: u64,
-    law: u32,
-    holds: u32,
+    law: SentLaw,
+    holds: u64,
     /// Body and node; the largest numbers where there is none.
     members: [[usize; 2]; 2],
     point: [f64; 3],
@@ -267,7 +267,7 @@ impl SentRow {
         SentRow {
             source: label.source.code(),
             block: row.block,
-            law: row.law.code(),
+            law: row.law.sent(),
             holds: row.holds().into(),
             members: label.members.map(member),
             point: label.point,
@@ -282,7 +282,7 @@ impl SentRow {
     fn row(&self) -> SolvedRow {
         let member =
             |[body, node]: [usize; 2]| (body != usize::MAX).then_some(BodyNode { body, node });
-        let law = Law::of_code(self.law).expect("a law that a rank has sent");
+        let law = self.law.law();
         SolvedRow {
             label: RowLabel {
                 source: RowSource::of_code(self.source),

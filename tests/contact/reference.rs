@@ -37,7 +37,7 @@ fn the_model_problem_agrees_with_the_oracle() {
         near(s.energy, "energy", 1e-12);
         near(s.contact_force, "contact_force", 1e-12);
         assert!((s.contact_force - 0.25).abs() < 1e-13);
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         let nodes: Vec<f64> = s
             .closed
             .iter()

@@ -20,18 +20,22 @@ fn contact(more: &str) -> String {
 }
 
 fn labels(scene: &Scene) -> Vec<RowLabel> {
-    scene.rows(&|_| true).iter().map(|r| r.label).collect()
+    scene
+        .solver_rows(&|_| true)
+        .iter()
+        .map(|r| r.label)
+        .collect()
 }
 
 fn gaps(scene: &Scene) -> Vec<f64> {
-    scene.rows(&|_| true).iter().map(|r| r.gap).collect()
+    scene.solver_rows(&|_| true).iter().map(|r| r.gap).collect()
 }
 
 #[test]
 fn a_row_says_that_the_second_body_stays_above_the_first() {
     for (order, sign) in [("[\"a\", \"b\"]", 1.0), ("[\"b\", \"a\"]", -1.0)] {
         let scene = pair(&format!("[[contact]]\nbodies = {order}\ngap = 0.5\n"));
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         assert_eq!(rows.len(), 5);
         for (k, row) in rows.iter().enumerate() {
             let k = k as u64;
@@ -81,7 +85,7 @@ fn gaps_have_three_forms() {
 /// (holds, inequality) of every row.
 fn kinds(scene: &Scene) -> Vec<(bool, bool)> {
     let kind = |r: &Row| (r.holds, r.law == Law::Unilateral);
-    scene.rows(&|_| true).iter().map(kind).collect()
+    scene.solver_rows(&|_| true).iter().map(kind).collect()
 }
 
 #[test]
@@ -114,7 +118,7 @@ fn an_entry_that_names_the_pair_beats_all() {
     );
     let none = "[[tie]]\nbodies = [\"a\", \"b\"]\nwhere = \"none\"\n";
     let more = body("c", "[2, 0]", "");
-    let rows = pair(&format!("{more}{all}{none}")).rows(&|_| true);
+    let rows = pair(&format!("{more}{all}{none}")).solver_rows(&|_| true);
     assert_eq!(rows.len(), 5);
     assert!(rows.iter().all(|r| r.block >= 25));
     // A contact by name overrides a tie of all pairs; ties and contacts of all pairs coexist.
@@ -134,7 +138,7 @@ fn an_entry_that_names_the_pair_beats_all() {
 fn cross(entries: &str) -> Vec<([usize; 2], bool)> {
     let text = format!("[grid]\nbodies = 2\nsize = 2\nelements = 2\n{entries}");
     let scene = Scene::parse("c.toml", &text).unwrap();
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     let labels = labels(&scene);
     let here = labels
         .iter()
@@ -180,20 +184,20 @@ fn given_values_go_to_the_right_hand_side() {
     };
     // u_a ≤ g + v_b
     let scene = two("", "dirichlet = { left = \"2 + y\" }", "gap = 0.5");
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows.len(), 5);
     assert_eq!(rows[2].terms, [(14, 1.0)]);
     assert_eq!(gaps(&scene), [2.5, 2.75, 3.0, 3.25, 3.5]);
-    let label = scene.rows(&|_| true)[2].label;
+    let label = scene.solver_rows(&|_| true)[2].label;
     assert_eq!(label.members.map(|m| m.unwrap().node), [14, 10]);
     // −u_b ≤ g − v_a
     let scene = two("dirichlet = { right = 3 }", "", "gap = 0.5");
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows[2].terms, [(35, -1.0)]);
     assert_eq!(rows[2].gap, -2.5);
     // Both values are prescribed and compatible: no row is left.
     let scene = two("dirichlet = [\"bottom\"]", "dirichlet = { bottom = 1 }", "");
-    assert_eq!(scene.rows(&|_| true).len(), 4);
+    assert_eq!(scene.solver_rows(&|_| true).len(), 4);
     assert_eq!(scene.plan().contact_rows, 4);
 }
 
@@ -208,7 +212,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
         ["a.top below", "a.top above", "b.right above", "b.top above"]
     );
     assert!(!scene.obstacles[0].upper && scene.obstacles[1].upper);
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     let labels = labels(&scene);
     // Nodes 20, 21, 22 of `a` twice; nine nodes of `b`, the corner once.
     assert_eq!(rows.len(), 6 + 9);
@@ -244,14 +248,16 @@ fn obstacles_meet_ties_and_given_values() {
     let obstacle = "[[obstacle]]\nbody = \"all\"\nside = \"bottom\"\nbelow = -1\nabove = 3\n";
     let scene = pair(obstacle);
     // (1, 0) belongs to both bodies: one tie and four bounds share the block of the point.
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     let here: Vec<&Row> = rows.iter().filter(|r| r.block == 4).collect();
     assert_eq!(here.len(), 5);
     assert_eq!(here[0].terms.len(), 2);
     assert_eq!(rows.len(), 5 + 20);
     // A prescribed node has no row.
     let text = body("a", "[0, 0]", "dirichlet = [\"left\"]") + obstacle;
-    let rows = Scene::parse("o.toml", &text).unwrap().rows(&|_| true);
+    let rows = Scene::parse("o.toml", &text)
+        .unwrap()
+        .solver_rows(&|_| true);
     assert_eq!(rows.len(), 8);
     assert!(rows.iter().all(|r| r.terms[0].0 != 0));
     // A side that is prescribed everywhere has no inequality.
@@ -268,7 +274,7 @@ fn every_row_is_provided_once_and_blocks_stay_together() {
         "press_ramp",
     ] {
         let scene = Scene::load(format!("../../examples/scenes/{name}.toml")).unwrap();
-        let whole = scene.rows(&|_| true);
+        let whole = scene.solver_rows(&|_| true);
         assert_eq!(
             scene.gaps(&|_| true, scene.n_steps() - 1).unwrap(),
             gaps(&scene)
@@ -281,7 +287,7 @@ fn every_row_is_provided_once_and_blocks_stay_together() {
                 let mut found = Vec::new();
                 for rank in 0..ranks {
                     let mine = |s: usize| owns(s, rank);
-                    let rows = scene.rows(&mine);
+                    let rows = scene.solver_rows(&mine);
                     assert_eq!(scene.gaps(&mine, 0).unwrap().len(), rows.len());
                     found.extend(rows.into_iter().map(|r| (r, rank)));
                 }

@@ -23,7 +23,7 @@ fn where_sides_beside_obstacles_meet_the_tighter_bound_counts() {
             format!("[[obstacle]]\nbody = \"a\"\nside = \"{side}\"\nabove = {above}\n")
         };
         let scene = parse(&(body("a", 0.0, 4, "") + &on("right", right) + &on("top", top)));
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         assert_eq!(rows.len(), 9);
         let corner = rows.iter().filter(|r| r.terms[0].0 == 24);
         assert_eq!(corner.map(|r| r.gap).collect::<Vec<f64>>(), [1.0]);
@@ -42,7 +42,7 @@ fn given_values_may_use_the_distance_and_no_more() {
             "s.toml",
             &format!("physics = \"elasticity\"\n{both}{contact}"),
         );
-        found.map(|scene| scene.rows(&|_| true).len())
+        found.map(|scene| scene.solver_rows(&|_| true).len())
     };
     assert_eq!(apart(0.2).unwrap(), 0);
     assert_eq!(apart(0.25).unwrap(), 0);
@@ -60,7 +60,7 @@ fn given_values_count_along_the_normal() {
     let contact = "[[contact]]\nbodies = [\"a\", \"b\"]\ngap = 0.5\n";
     let bodies = body("a", 0.0, 2, shape) + &body("b", 1.0, 2, &given);
     let scene = parse(&format!("physics = \"elasticity\"\n{bodies}{contact}"));
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows.len(), 3);
     let expected = 0.5 + (2.0 * 0.3 - 0.2) / 5.0_f64.sqrt();
     for row in rows {
@@ -103,7 +103,7 @@ fn faces_that_others_tie_are_not_open_at_the_cross_point() {
     let scene = parse(&format!(
         "[grid]\nbodies = 2\nsize = 2\nelements = 4\n{part}"
     ));
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     let at = |row: &&Row| row.label.point == [1.0, 1.0, 0.0];
     assert!(rows.iter().filter(at).count() >= 5);
     assert!(rows.iter().filter(at).all(|row| row.holds));
@@ -128,7 +128,7 @@ fn plates_touch_with_the_sides_between_them_alone() {
         plate("low", 0.0),
         plate("up", 0.03)
     ));
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows.len(), 5);
     for row in rows {
         assert!((row.gap - 0.01).abs() < 1e-15, "{}", row.gap);
@@ -157,7 +157,7 @@ fn equations_add_up_and_follow_given_values() {
         location: base::Location::default(),
     });
     let scene = Scene::new(spec).expect("a scene");
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows.len(), 1);
     assert_eq!(rows[0].terms, [(4, 1.5), (9, -2.0)]);
     assert_eq!(rows[0].gap, 10.0 - 0.5 * 8.0 * 3.0);
@@ -187,7 +187,7 @@ fn areas_end_where_the_other_body_does() {
             of("low", 0, 2),
             of("up", 1, 1)
         ));
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         let areas: Vec<f64> = rows.iter().map(|row| row.label.area).collect();
         assert_eq!(areas, [0.25, 0.5, 0.25], "{bodies}");
     }

@@ -60,7 +60,7 @@ impl Problem {
             g: Vec::new(),
             labels: Vec::new(),
         };
-        for (row, gap) in scene.rows(&|_| true).iter().zip(gaps) {
+        for (row, gap) in scene.solver_rows(&|_| true).iter().zip(gaps) {
             if row.law == Law::Unilateral {
                 let terms = row
                     .terms

@@ -60,7 +60,7 @@ fn multipliers_of_table_1_agree_with_the_reference() {
             // Both columns have the same candidate contact nodes.
             let candidates = Scene::lee(bodies, subdomains, elements, Faces::Whole)
                 .unwrap()
-                .rows(&|_| true);
+                .solver_rows(&|_| true);
             assert_eq!(problem.rows.len(), candidates.len(), "{case}");
             assert_eq!(plan.open_rows, candidates.len() - holding, "{case}");
             // Corners of bodies are vertices, too, but a dof with a single copy has no constraint.
@@ -235,7 +235,7 @@ size = 1
 elements = 3
 ";
     let scene = Scene::parse("t.toml", text).unwrap();
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     assert_eq!(rows.len(), 1);
     assert_eq!(rows[0].terms, [(8, 1.0), (9, -1.0)]);
     assert_eq!(rows[0].block, 8);
@@ -253,7 +253,7 @@ fn ten_thousand_bodies_are_no_trouble() {
 #[test]
 fn the_rest_of_a_partly_tied_face_is_open() {
     let scene = Scene::load("../../examples/scenes/partly_tied.toml").unwrap();
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     // 17 nodes on each face, nothing given on them; nine and three are tied.
     assert_eq!(rows.len(), 34);
     assert_eq!(rows.iter().filter(|r| r.holds).count(), 12);
@@ -264,7 +264,7 @@ fn the_rest_of_a_partly_tied_face_is_open() {
     let none = "[[tie]]\nbodies = [\"b1_0\", \"b2_0\"]\nwhere = \"none\"\n";
     for more in ["", none] {
         let scene = Scene::parse("t.toml", &format!("{grid}{tie}{more}")).unwrap();
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         assert_eq!((rows.len(), scene.plan().open_rows), (5, 4));
         assert!(rows.iter().all(|r| r.terms[1].0 < 50));
     }

@@ -213,7 +213,7 @@ fn free_faces_need_no_matching_nodes() {
         body("b", "[1, 0]", "elements = 5")
     );
     let scene = Scene::parse("s.toml", &text).unwrap();
-    assert!(scene.rows(&|_| true).is_empty());
+    assert!(scene.solver_rows(&|_| true).is_empty());
     // Half of the face matches: a tie there is fine.
     let text = format!(
         "{}{}[[tie]]\nbodies = [\"a\", \"b\"]\npoints = [0, 0.5, 1]\n",
@@ -221,7 +221,10 @@ fn free_faces_need_no_matching_nodes() {
         body("b", "[1, 0]", "elements = 6")
     );
     assert_eq!(
-        Scene::parse("s.toml", &text).unwrap().rows(&|_| true).len(),
+        Scene::parse("s.toml", &text)
+            .unwrap()
+            .solver_rows(&|_| true)
+            .len(),
         3
     );
 }

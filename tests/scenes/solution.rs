@@ -186,7 +186,7 @@ fn the_numbering_is_a_bijection_that_merges_exactly_what_is_tied() {
         }
         assert_eq!(position.len() as u64, numbering.len(), "{name}");
         // The numbering merges exactly the classes that the rows span: N = body dofs − rank of the rows.
-        let mut rows = scene.rows(&|_| true);
+        let mut rows = scene.solver_rows(&|_| true);
         rows.retain(|r| r.holds);
         let mut rank = 0;
         let mut parent: HashMap<u64, u64> = HashMap::new();
@@ -245,7 +245,7 @@ elements = 4
 ";
     let scene = Scene::parse("t.toml", text).unwrap();
     assert_eq!(scene.bodies[1].prescribed, vec![(0, 3.0), (20, 7.0)]);
-    assert_eq!(scene.rows(&|_| true).len(), 3);
+    assert_eq!(scene.solver_rows(&|_| true).len(), 3);
     let mesh = scene.subdomain_mesh(1).unwrap();
     assert_eq!(mesh.local_dof(0), None);
     assert_eq!(mesh.nodal(&vec![0.5; mesh.n_free()])[20], 7.0);

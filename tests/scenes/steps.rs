@@ -98,7 +98,7 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
                 assert_eq!(mesh.prescribed[k], scaled);
             }
         }
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         let gaps: Vec<f64> = rows.iter().map(|r| r.gap).collect();
         assert_eq!(gaps, scene.gaps(&|_| true, last).unwrap());
     }
@@ -128,7 +128,7 @@ fn meshes_follow_given_values() {
 #[test]
 fn gaps_follow_their_ramp_and_given_values() {
     let scene = scene(STEPS);
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     for (step, t) in [0.25, 0.5, 0.75].into_iter().enumerate() {
         let gaps = scene.gaps(&|_| true, step).unwrap();
         let (mut contacts, mut given, mut bounds) = (0, 0, 0);

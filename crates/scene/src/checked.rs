@@ -67,7 +67,7 @@ pub struct Scene {
     /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`InterfacePoint::block`].
     pub points: Vec<InterfacePoint>,
     /// Ties, contacts and bounds at the points, in their order, pairs before obstacles; then equations between
-    /// displacements; then rows between sides whose nodes do not match. [`Scene::rows`](Scene::rows()) makes rows of B
+    /// displacements; then rows between sides whose nodes do not match. [`Scene::solver_rows`] makes rows of B
     /// of them.
     pub rows: Vec<Row>,
     /// Points of interest.

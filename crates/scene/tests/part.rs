@@ -126,7 +126,7 @@ fn parts_have_the_rows_of_the_whole() {
                     };
                     let part = Scene::load_if(Path::new(file), false, |_| Ok(wanted)).expect(file);
                     let owns = wanted.owns(&whole.bodies);
-                    let written = |s: &Scene| format!("{:?}", s.rows(&owns));
+                    let written = |s: &Scene| format!("{:?}", s.solver_rows(&owns));
                     assert_eq!(written(&part), written(&whole), "{file}");
                     assert_eq!(part.dofs(), whole.dofs(), "{file}");
                     let given = |s: &Scene| -> Vec<_> {
@@ -140,13 +140,13 @@ fn parts_have_the_rows_of_the_whole() {
                     };
                     let contact = |s: &Scene| s.sides_that_may_touch(own);
                     assert_eq!(contact(&part), contact(&whole), "{file}");
-                    rows += part.rows(&owns).len();
+                    rows += part.solver_rows(&owns).len();
                     // Rows that lead from point to point need all points.
                     assert_eq!(part.is_whole, file.contains("mortar"), "{file}");
-                    let all = part.rows(&|_| true).len();
-                    assert!(part.is_whole || all == part.rows(&owns).len());
+                    let all = part.solver_rows(&|_| true).len();
+                    assert!(part.is_whole || all == part.solver_rows(&owns).len());
                 }
-                assert_eq!(rows, whole.rows(&|_| true).len(), "{file}");
+                assert_eq!(rows, whole.solver_rows(&|_| true).len(), "{file}");
             }
         }
     }

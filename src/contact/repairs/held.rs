@@ -14,7 +14,7 @@ use crate::feti::projector::by_column::ByColumn;
 use crate::feti::projector::columns::KernelColumns;
 use crate::feti::projector::gram::FEW;
 use crate::feti::projector::kernel_motion::{Coefficient, KernelMotion};
-use crate::substructures::{Law, Problem};
+use crate::substructures::{Problem, SentLaw};
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
@@ -78,7 +78,7 @@ pub fn restore_coercivity(
                 motion,
                 score,
                 row,
-                law: jump.law[row].code().into(),
+                law: jump.law[row].sent(),
             };
             let (columns, values) = g.entries(row);
             let entries = columns.iter().zip(values);
@@ -143,13 +143,7 @@ struct Offered {
     motion: usize,
     score: f64,
     row: usize,
-    law: u64,
-}
-
-impl Offered {
-    fn law(&self) -> Law {
-        Law::of_code(self.law as u32).expect("a law that a rank has sent")
-    }
+    law: SentLaw,
 }
 
 /// The row, and the rank that offers it.
@@ -260,7 +254,7 @@ impl<'a> Free<'a> {
             })
             .filter(|w| w.2.abs() > 1e-2 * against)
             .collect();
-        let law = row.offered.law();
+        let law = row.offered.law.law();
         let opposed = works.iter().any(|&(m, _, relative)| {
             relative.abs() > against
                 && self

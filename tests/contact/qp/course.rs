@@ -179,7 +179,7 @@ impl Run<'_> {
         for (sub, f) in problem.local.iter_mut().zip(loads) {
             sub.f = f;
         }
-        problem.rows = self.present.rows(&all);
+        problem.rows = self.present.solver_rows(&all);
         for (row, gap) in problem.rows.iter_mut().zip(self.present.gaps(&all, step)?) {
             row.gap = gap;
         }
@@ -192,7 +192,7 @@ impl Run<'_> {
         let mut start = None;
         if let (Some(solver), Some(last)) = (&mut self.solver, &self.last) {
             if self.scene.is_renewed() {
-                solver.set_rows(self.present.rows(&all))?;
+                solver.set_rows(self.present.solver_rows(&all))?;
                 start = warm(solver, &problem.rows, last);
             } else {
                 start = Some(last.warm_start());

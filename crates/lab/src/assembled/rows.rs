@@ -24,7 +24,7 @@ pub struct GapInequality {
     pub gap: f64,
 }
 
-/// All inequalities, in the order of [`Scene::rows`].
+/// All inequalities, in the order of [`Scene::solver_rows`].
 #[derive(Debug, Clone, Default)]
 pub struct Inequalities {
     /// Unknowns in some row, increasing.
@@ -44,7 +44,7 @@ pub struct Inequalities {
 impl Inequalities {
     /// The inequalities of `scene`. The rows are meaningless where `layout.trouble` is set.
     pub fn new(scene: &Scene, layout: &UnknownLayout) -> Inequalities {
-        let all = scene.rows(&|_| true);
+        let all = scene.solver_rows(&|_| true);
         let mut out = Inequalities {
             held: layout.held.clone(),
             forms: layout.forms.clone(),

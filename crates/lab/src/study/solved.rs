@@ -51,7 +51,7 @@ impl Solved {
         })
     }
 
-    /// The rows of all ranks, in the order of [`Scene::rows`], on every rank. Collective.
+    /// The rows of all ranks, in the order of [`Scene::solver_rows`], on every rank. Collective.
     pub fn rows(&self, session: &Session) -> Vec<SolvedRow> {
         SolvedRow::on_all_ranks(session.comm(), self.solution.rows())
     }

@@ -88,7 +88,7 @@ fn inequalities_bound_single_unknowns() {
             let (terms, offset) = layout.terms(layout.index(dof));
             terms.iter().map(|&(w, c)| c * value(w)).sum::<f64>() + offset
         };
-        let all = scene.rows(&|_| true);
+        let all = scene.solver_rows(&|_| true);
         let jump = |row: &Row| row.terms.iter().map(|&(dof, b)| b * u(dof)).sum::<f64>();
         let inequalities = all.iter().filter(|r| r.law == Law::Unilateral);
         let mut combined = 0;
@@ -131,7 +131,7 @@ fn the_equations_of_a_set_are_the_saddle_point_problem() {
     with_session(|session| {
         for (what, scene) in scenes() {
             let layout = UnknownLayout::new(&scene);
-            let all = scene.rows(&|_| true);
+            let all = scene.solver_rows(&|_| true);
             let inequalities: Vec<&Row> = all.iter().filter(|r| r.law == Law::Unilateral).collect();
             let count = inequalities.len();
             for set in [
@@ -227,7 +227,7 @@ fn a_node_opposite_two_bodies_has_two_bounds() {
         places.sort_unstable();
         places.dedup();
         assert_eq!(places.len(), rows.len());
-        let carriers = scene.rows(&|_| true);
+        let carriers = scene.solver_rows(&|_| true);
         let mut carriers: Vec<u64> = carriers
             .iter()
             .filter_map(|r| Some(layout.carrier(r)?.0))

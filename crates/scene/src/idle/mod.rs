@@ -25,7 +25,7 @@ impl Scene {
         if slack.is_empty() {
             return (out, notes);
         }
-        let rows = self.rows(&|_| true);
+        let rows = self.solver_rows(&|_| true);
         let mut seen: Vec<u64> = rows
             .iter()
             .flat_map(|r| r.terms.iter().map(|t| t.0))

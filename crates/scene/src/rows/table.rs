@@ -14,7 +14,7 @@ impl Scene {
     /// step. There are rows u_a − u_b = 0 for every tied pair of bodies a < b, open rows at the candidate contact nodes
     /// of faces that are tied in part, rows u_a − u_b ≤ g in contact (a is the first body of the pair), and rows u ≤ g
     /// and −u ≤ −g beside obstacles. Given values are moved to the right-hand side.
-    pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<fetifeti::Row> {
+    pub fn solver_rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<fetifeti::Row> {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
         let rounding = Rounding::new(self);
@@ -41,7 +41,7 @@ impl Scene {
         self.rows.iter().filter(|row| row.is_mortar())
     }
 
-    /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (without `[steps]` the only step is 0).
+    /// The right-hand sides of the rows of [`Scene::solver_rows`] at load step `step` (without `[steps]` the only step is 0).
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.

@@ -18,7 +18,7 @@ pub struct RowTerms {
 }
 
 impl Scene {
-    /// The terms of the rows of [`Scene::rows`], in their order. The force of a multiplier λ on a term is −λ times the
+    /// The terms of the rows of [`Scene::solver_rows`], in their order. The force of a multiplier λ on a term is −λ times the
     /// coefficients.
     pub fn row_terms<'s>(
         &'s self,

@@ -81,7 +81,7 @@ impl Renewed {
         }
         self.end = left;
         let renewed = self.renew_at_end(solver.session(), step);
-        let set_up = renewed.and_then(|()| solver.set_rows(self.scene().rows(owns)));
+        let set_up = renewed.and_then(|()| solver.set_rows(self.scene().solver_rows(owns)));
         set_up.map_err(|e| self.at_step(step, e))
     }
 
@@ -135,7 +135,7 @@ impl Renewed {
         }
         self.renew_at_end(&session, step)?;
         let scene = self.scene();
-        let rows = scene.rows(owns);
+        let rows = scene.solver_rows(owns);
         let start = rows.iter().map(|row| {
             let inequality = row.law.is_inequality();
             let place = places(scene, &row.label, inequality).next();

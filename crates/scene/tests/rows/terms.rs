@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// The terms of every row at free degrees of freedom are those that the method gets.
 fn same_as_the_rows(scene: &Scene) {
-    let rows = scene.rows(&|_| true);
+    let rows = scene.solver_rows(&|_| true);
     let terms: Vec<RowTerms> = scene.row_terms(&|_| true).collect();
     assert_eq!(rows.len(), terms.len());
     assert!(!rows.is_empty());

@@ -89,7 +89,7 @@ impl<'a> UnknownLayout<'a> {
             trouble: None,
         };
         layout.fill();
-        let rows = scene.rows(&|_| true);
+        let rows = scene.solver_rows(&|_| true);
         let inequalities: Vec<&Row> = rows.iter().filter(|r| r.law.is_inequality()).collect();
         for row in &inequalities {
             let form = layout.motions.of_terms(scene, &row.terms);
