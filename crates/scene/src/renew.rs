@@ -26,8 +26,8 @@ impl Scene {
     }
 
     /// Renews the contacts and obstacles for load step `step`, at the displacements of the end of the last one, if
-    /// `[steps]` has `update`. The rows are then those of [`Scene::solver_rows`] with the right-hand sides of [`Scene::gaps`]:
-    /// [`FetiFeti::set_rows`](fetifeti::FetiFeti::set_rows) takes them.
+    /// `[steps]` has `update`. The rows are then those of [`Scene::solver_rows`] with the right-hand sides of
+    /// [`Scene::gaps`]: [`FetiFeti::set_rows`](fetifeti::FetiFeti::set_rows) takes them.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) where given values contradict an inequality; the scene is then as

@@ -41,7 +41,8 @@ impl Scene {
         self.rows.iter().filter(|row| row.is_mortar())
     }
 
-    /// The right-hand sides of the rows of [`Scene::solver_rows`] at load step `step` (without `[steps]` the only step is 0).
+    /// The right-hand sides of the rows of [`Scene::solver_rows`] at load step `step` (without `[steps]` the only step
+    /// is 0).
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.

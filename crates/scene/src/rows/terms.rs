@@ -18,8 +18,8 @@ pub struct RowTerms {
 }
 
 impl Scene {
-    /// The terms of the rows of [`Scene::solver_rows`], in their order. The force of a multiplier λ on a term is −λ times the
-    /// coefficients.
+    /// The terms of the rows of [`Scene::solver_rows`], in their order. The force of a multiplier λ on a term is −λ
+    /// times the coefficients.
     pub fn row_terms<'s>(
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
