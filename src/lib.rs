@@ -132,7 +132,9 @@ pub use substructures::{Problem, Row, Subdomain};
 /// Parts of a [`Problem`]: matrices, primal entities, and what rows say of themselves.
 pub mod problem {
     pub use crate::feti::Numbers;
-    pub use crate::substructures::{BodyNode, Entity, EntityKind, Idle, Law, RowLabel, RowSource};
+    pub use crate::substructures::{
+        BodyNode, Entity, EntityKind, FrictionBound, FrictionNode, Idle, Law, RowLabel, RowSource,
+    };
     #[doc(inline)]
     pub use base::linalg::csr::Csr;
 }

@@ -1,6 +1,6 @@
 //! Settings of the linear method and of the contact loop, with defaults.
 
-pub use crate::contact::{ContactSettings, ContactType, Tuning};
+pub use crate::contact::{ContactSettings, ContactType, FrictionTuning, Tuning};
 pub use crate::feti::settings::{
     Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
     Scaling,

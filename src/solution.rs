@@ -50,11 +50,13 @@ pub struct Solution {
     /// Steps of the contact loop; empty without inequalities.
     pub steps: Vec<Step>,
     rows: Vec<SolvedRow>,
+    tangential: Vec<SolvedRow>,
 }
 
 impl Solution {
     /// The solution from the result of the linear method, its rows, and the steps of the contact loop.
     pub(crate) fn new(found: LinearSolution, rows: Vec<SolvedRow>, steps: Vec<Step>) -> Solution {
+        let (tangential, rows) = rows.into_iter().partition(|row| row.law.is_friction());
         Solution {
             u: found.u,
             lambda: found.lambda,
@@ -71,6 +73,7 @@ impl Solution {
             certified: None,
             steps,
             rows,
+            tangential,
         }
     }
 
@@ -81,13 +84,21 @@ impl Solution {
 
     /// The multipliers inside bodies, which come before those of the rows between bodies.
     pub fn inside_bodies(&self) -> &[f64] {
-        &self.lambda[..self.lambda.len() - self.rows.len()]
+        let between = self.rows.len() + self.tangential.len();
+        &self.lambda[..self.lambda.len() - between]
     }
 
-    /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure,
-    /// state.
+    /// The rows between bodies that this rank provides, in its order, but for the tangential ones: body, node, normal,
+    /// gap, multiplier, pressure, state.
     pub fn rows(&self) -> &[SolvedRow] {
         &self.rows
+    }
+
+    /// The tangential rows of nodes with friction that this rank provides, in its order. The normal of each is its
+    /// direction, its multiplier the force along it with which the first body drags the other side along, its gap less
+    /// than zero by the slip of the load step, its state whether the node sticks, slips or is apart.
+    pub fn tangential_rows(&self) -> &[SolvedRow] {
+        &self.tangential
     }
 
     /// Whether everything reached its tolerance, or rounding where the tolerance is below it.

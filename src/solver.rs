@@ -275,7 +275,7 @@ impl FetiFeti {
         let mut active = vec![true; between.start];
         for i in between {
             let (multiplier, holds) = rows[jump.given(i)];
-            let holds = if jump.law[i].is_inequality() {
+            let holds = if jump.law[i].is_decided() {
                 holds
             } else {
                 jump.initial[i]

@@ -28,6 +28,7 @@ pub struct HostRow {
 /// The law of a C FetiFetiRowKind.
 pub fn law(number: i32, whose: impl FnOnce() -> String) -> Result<Law> {
     let found = u64::try_from(number).ok().and_then(Law::of_kind);
+    let found = found.filter(|law| !law.is_friction());
     found.ok_or_else(|| {
         Fault::OutOfRange.error(format!(
             "{} of kind {number}, expected FETIFETI_EQUALITY (0) or FETIFETI_INEQUALITY (1)",

@@ -14,6 +14,7 @@ use super::certified_signs::{signs, Signs};
 use super::course::DualCourse;
 use super::driver::{self, Begin, Begun, InnerProblem, Verdict};
 use super::existence::Existence;
+use super::friction::{self, Friction, GivenMultipliers};
 use super::lagrangian::AugmentedLagrangian;
 use super::settings::{ContactSettings, ContactType};
 use super::smalbe::Smalbe;
@@ -21,7 +22,8 @@ use super::state::{Observer, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
-use crate::Result;
+use crate::{Error, Result};
+use parallel::exchange::max_all;
 
 /// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
 /// the method hold that held before. Collective.
@@ -36,11 +38,21 @@ pub(crate) fn solve(
 ) -> Result<(LinearSolution, Vec<Step>)> {
     method.with_rows_kept(|| {
         Existence::new(method, &method.dual(), settings).of_gaps()?;
+        let friction = friction::has_friction(method);
+        if friction && settings.kind != ContactType::ActiveSet {
+            return Err(Error::input(format!(
+                "-fetifeti_contact_type is {} in a problem with friction, expected {}",
+                settings.kind.name(),
+                ContactType::ActiveSet.name()
+            )));
+        }
         let problem = DualProblem {
             method,
             settings,
             before: start.map_or(0, |s| s.steps),
+            friction,
         };
+        let _given = GivenMultipliers::of(method);
         driver::solve(&problem, start.cloned(), observe)
     })
 }
@@ -51,6 +63,8 @@ struct DualProblem<'m> {
     settings: &'m ContactSettings,
     /// Steps of the loop that is continued.
     before: usize,
+    /// Whether there is friction.
+    friction: bool,
 }
 
 impl DualProblem<'_> {
@@ -60,6 +74,32 @@ impl DualProblem<'_> {
         let (method, dual) = (self.method, self.method.dual());
         let load = Loads::new(&method.problem, &dual).kernel;
         Existence::new(method, &dual, self.settings).if_many(&load, lambda)
+    }
+
+    /// The verdict on a certified solution with friction, after so many steps and rounds. Collective.
+    fn judged(
+        &self,
+        mut certified: LinearSolution,
+        (steps, round): (usize, usize),
+    ) -> Result<Verdict<DualCourse>> {
+        let (method, tuning) = (self.method, &self.settings.tuning);
+        let rtol = method.ksp.tolerances()?.0;
+        let largest = certified.lambda.iter().map(|l| l.abs()).fold(0.0, f64::max);
+        let mut largest = [largest];
+        max_all(method.session.comm(), &mut largest);
+        let allowed = (tuning.certified_wrong * rtol).max(tuning.certified_rounding) * largest[0];
+        if friction::error(method, &certified)? <= allowed {
+            return Ok(Verdict::Done(certified));
+        }
+        if round == tuning.certified_rounds {
+            certified.status = Status::Certificate;
+            return Ok(Verdict::Done(certified));
+        }
+        let active = method.dual().stiffness.jump.active.clone();
+        let mut state = State::warm(certified.lambda.clone(), &active);
+        state.accuracy = tuning.certified_reduction.powi(round as i32 + 1);
+        state.steps = self.before + steps;
+        Ok(Verdict::Wrong(state, certified))
     }
 }
 
@@ -73,6 +113,10 @@ impl InnerProblem for DualProblem<'_> {
             Begin::HandOver(state) => (ContactType::AugmentedLagrangian, Some(state)),
             Begin::Again(state) => (ContactType::ActiveSet, Some(state)),
         };
+        if self.friction {
+            let friction = Friction::new(method, settings, start.as_ref())?;
+            return Ok(Box::new(friction));
+        }
         let cold = || State::cold(&method.dual().stiffness.jump);
         Ok(match kind {
             ContactType::ActiveSet => Box::new(ActiveSet::new(method, settings, start.as_ref())?),
@@ -121,6 +165,7 @@ impl InnerProblem for DualProblem<'_> {
             return Ok(Verdict::Done(certified));
         }
         match signs(method, tuning, &certified)? {
+            Signs::Right if self.friction => self.judged(certified, (steps, round)),
             Signs::Right => Ok(Verdict::Done(certified)),
             Signs::Shared(lambda) => {
                 let shared = method.with_multipliers(certified, lambda)?;

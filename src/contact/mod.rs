@@ -20,6 +20,7 @@ pub mod driver;
 mod dual_problem;
 mod existence;
 mod force_balance;
+mod friction;
 mod inner;
 mod judge;
 mod lagrangian;
@@ -38,6 +39,7 @@ mod state;
 mod strategy;
 mod tuning;
 
+pub use friction::tuning::FrictionTuning;
 pub use piecewise_quadratic::line_minimum;
 pub use settings::{ContactSettings, ContactType};
 pub use tuning::Tuning;

@@ -60,6 +60,10 @@ pub struct State {
     pub accuracy: f64,
     /// SMALBE's multipliers of the balance of forces, length r, the same on every rank; empty if SMALBE has not run.
     pub mu: Vec<f64>,
+    /// Where the sides stood at the start of the load step: by how far they had slid, on the tangential owned rows;
+    /// empty if they have not.
+    #[serde(default)]
+    pub slid: Vec<f64>,
 }
 
 impl State {
@@ -75,15 +79,23 @@ impl State {
             safeguarded: false,
             accuracy: 1.0,
             mu: Vec::new(),
+            slid: Vec::new(),
         }
     }
 
-    /// This state with other rows: their multipliers, and whether each is to hold and held in the step before.
-    pub fn on_rows(&self, lambda: Vec<f64>, active: Vec<bool>, before: Vec<bool>) -> State {
+    /// This state with other rows: their multipliers, whether each is to hold and held in the step before, and how far
+    /// they had slid.
+    pub fn on_rows(
+        &self,
+        lambda: Vec<f64>,
+        [active, before]: [Vec<bool>; 2],
+        slid: Vec<f64>,
+    ) -> State {
         State {
             lambda,
             active,
             before,
+            slid,
             ..self.clone()
         }
     }

@@ -1,5 +1,7 @@
 //! The constants of the contact loop.
 
+use super::friction::tuning::FrictionTuning;
+
 /// The named constants of the contact loop. They decide how a loop comes to its end. Which end is a solution is the
 /// matter of the certificate, which knows only those whose names begin with `certified`.
 ///
@@ -315,6 +317,8 @@ pub struct Tuning {
     ///
     /// Ten times less: SMALBE +529 steps, +1410 iterations. Ten times more: SMALBE −1 steps, −92 iterations.
     pub closing_steps: usize,
+    /// The constants of friction.
+    pub friction: FrictionTuning,
 }
 
 impl Tuning {
@@ -382,6 +386,7 @@ impl Tuning {
         jumps: 4,
         stalled: 20,
         closing_steps: 5,
+        friction: FrictionTuning::DEFAULT,
     };
 }
 

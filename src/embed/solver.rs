@@ -25,7 +25,7 @@ use crate::feti::krylov::solve::JudgeTiming;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
-use crate::substructures::{Problem, RowState, SolvedRow};
+use crate::substructures::{Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::exchange::total;
 use parallel::halo::Halo;
@@ -291,7 +291,7 @@ impl Embedded {
         let rows = &solution.rows()[self.n_ties..];
         let back =
             |value: fn(&SolvedRow) -> f64| self.contact.back(&self.session, rows.iter().map(value));
-        let holds = back(|r| f64::from(r.state != RowState::Open));
+        let holds = back(|r| f64::from(u8::from(r.holds())));
         GivenResults {
             multipliers: back(|r| r.multiplier),
             gaps: back(|r| r.gap),

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use base::linalg::csr::Csr;
 
-use super::{Entity, EntityKind, Idle, Law, Problem, Row, RowLabel, RowSource, Subdomain};
+use super::{
+    Entity, EntityKind, FrictionNode, Idle, Law, Problem, Row, RowLabel, RowSource, Subdomain,
+};
 
 impl Problem {
     /// A problem with a body of each name and `n_subdomains` subdomains over all ranks, so far without a subdomain and
@@ -22,6 +24,7 @@ impl Problem {
             weak: Vec::new(),
             local: Vec::new(),
             rows: Vec::new(),
+            friction: Vec::new(),
         }
     }
 
@@ -34,6 +37,12 @@ impl Problem {
     /// This problem with these rows of this rank. Each row is provided by exactly one rank.
     pub fn with_rows(mut self, rows: impl IntoIterator<Item = Row>) -> Problem {
         self.rows = rows.into_iter().collect();
+        self
+    }
+
+    /// This problem with friction at these nodes of this rank, whose rows it has.
+    pub fn with_friction(mut self, nodes: impl IntoIterator<Item = FrictionNode>) -> Problem {
+        self.friction = nodes.into_iter().collect();
         self
     }
 }
@@ -155,6 +164,15 @@ impl Row {
         Row {
             law: Law::Unilateral,
             ..Row::equality(terms, gap)
+        }
+    }
+
+    /// The tangential row Σ coefficient · u(body dof) = `slipped` of a node with friction, which sticks to begin with.
+    /// `slipped` is where the sides stand without a slip in this load step. Its block is that of the normal row.
+    pub fn tangential(terms: impl Into<Vec<(u64, f64)>>, slipped: f64) -> Row {
+        Row {
+            law: Law::Friction,
+            ..Row::equality(terms, slipped)
         }
     }
 

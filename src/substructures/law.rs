@@ -3,6 +3,7 @@
 //! ```text
 //!     tie           λ any              B u = c
 //!     unilateral    λ ≥ 0              B u ≤ c,     λ (B u − c) = 0
+//!     friction      |λ| ≤ g            B u = c where |λ| < g; g is that of its node (`friction`)
 //! ```
 //!
 //! Each law is a set of admissible multipliers. The dual of the set is what a gap may be, and the projection onto it is
@@ -22,6 +23,9 @@ pub enum Law {
     /// An inequality: (B u)_r ≤ c_r, with a multiplier that is not negative and that vanishes where the row is open
     /// [Lee (3.1)-(3.3)].
     Unilateral,
+    /// A tangential row of a node with friction: (B u)_r = c_r where the node sticks. Where it slips the multiplier is
+    /// given, and its bound follows from the normal row: [`FrictionNode`](super::FrictionNode) has it.
+    Friction,
 }
 
 /// The state of a row after a solve.
@@ -34,6 +38,10 @@ pub enum RowState {
     Open,
     /// An equation.
     Tied,
+    /// A tangential row: the sides stick.
+    Sticks,
+    /// A tangential row: the sides slip, with a friction force.
+    Slips,
 }
 
 /// A law on its way between ranks.
@@ -57,12 +65,13 @@ impl Law {
         match self {
             Law::Tie => 0,
             Law::Unilateral => 1,
+            Law::Friction => 2,
         }
     }
 
     /// The law of this [`kind`](Law::kind); `None` if there is none.
     pub fn of_kind(kind: u64) -> Option<Law> {
-        [Law::Tie, Law::Unilateral]
+        [Law::Tie, Law::Unilateral, Law::Friction]
             .into_iter()
             .find(|law| law.kind() == kind)
     }
@@ -72,18 +81,34 @@ impl Law {
         SentLaw { kind: self.kind() }
     }
 
-    /// Whether the contact loop decides if the row holds. A row of another law holds as the problem says.
+    /// Whether the row bounds displacements on one side.
     pub fn is_inequality(self) -> bool {
         match self {
-            Law::Tie => false,
+            Law::Tie | Law::Friction => false,
             Law::Unilateral => true,
+        }
+    }
+
+    /// Whether the contact loop decides if the row holds. A row of another law holds as the problem says.
+    pub fn is_decided(self) -> bool {
+        match self {
+            Law::Tie => false,
+            Law::Unilateral | Law::Friction => true,
+        }
+    }
+
+    /// Whether it is a tangential row of a node with friction.
+    pub fn is_friction(self) -> bool {
+        match self {
+            Law::Tie | Law::Unilateral => false,
+            Law::Friction => true,
         }
     }
 
     /// The least admissible multiplier; −∞ where there is none.
     pub fn least(self) -> f64 {
         match self {
-            Law::Tie => f64::NEG_INFINITY,
+            Law::Tie | Law::Friction => f64::NEG_INFINITY,
             Law::Unilateral => 0.0,
         }
     }
@@ -92,7 +117,7 @@ impl Law {
     /// which is λ = s for s = μ + (B u − c)/C if nothing bounds it.
     pub fn project(self, lambda: f64) -> f64 {
         match self {
-            Law::Tie => lambda,
+            Law::Tie | Law::Friction => lambda,
             Law::Unilateral => lambda.max(0.0),
         }
     }
@@ -100,7 +125,7 @@ impl Law {
     /// Whether a multiplier or a spring force λ is one that the row bears: a row that bears none is released.
     pub fn bears(self, lambda: f64) -> bool {
         match self {
-            Law::Tie => true,
+            Law::Tie | Law::Friction => true,
             Law::Unilateral => lambda > 0.0,
         }
     }
@@ -108,15 +133,16 @@ impl Law {
     /// How far λ is from the admissible multipliers; 0 for one of them. An inequality with a positive pull pulls.
     pub fn pull(self, lambda: f64) -> f64 {
         match self {
-            Law::Tie => 0.0,
+            Law::Tie | Law::Friction => 0.0,
             Law::Unilateral => (-lambda).max(0.0),
         }
     }
 
-    /// The multiplier of a row that does not hold.
-    pub fn released(self) -> f64 {
+    /// The multiplier of a row that does not hold, of which `given` is asked for.
+    pub fn released(self, given: f64) -> f64 {
         match self {
             Law::Tie | Law::Unilateral => 0.0,
+            Law::Friction => given,
         }
     }
 
@@ -124,8 +150,8 @@ impl Law {
     /// nothing, an inequality counts in any state.
     pub fn violation(self, gap: f64, holds: bool) -> f64 {
         match self {
-            Law::Tie if holds => gap.abs(),
-            Law::Tie => 0.0,
+            Law::Tie | Law::Friction if holds => gap.abs(),
+            Law::Tie | Law::Friction => 0.0,
             Law::Unilateral => gap.max(0.0),
         }
     }
@@ -133,7 +159,7 @@ impl Law {
     /// |λ (B u − c)| where the law asks it to vanish, else 0.
     pub fn complementarity(self, lambda: f64, gap: f64) -> f64 {
         match self {
-            Law::Tie => 0.0,
+            Law::Tie | Law::Friction => 0.0,
             Law::Unilateral => (lambda * gap).abs(),
         }
     }
@@ -142,17 +168,19 @@ impl Law {
     /// it if this is positive.
     pub fn resistance(self, work: f64) -> f64 {
         match self {
-            Law::Tie => work.abs(),
+            Law::Tie | Law::Friction => work.abs(),
             Law::Unilateral => work,
         }
     }
 
-    /// The state of a row, which holds or does not.
-    pub fn state(self, holds: bool) -> RowState {
+    /// The state of a row, which holds or does not, with its multiplier.
+    pub fn state(self, lambda: f64, holds: bool) -> RowState {
         match self {
-            _ if !holds => RowState::Open,
-            Law::Tie => RowState::Tied,
-            Law::Unilateral => RowState::Holds,
+            Law::Tie if holds => RowState::Tied,
+            Law::Unilateral if holds => RowState::Holds,
+            Law::Friction if holds => RowState::Sticks,
+            Law::Friction if lambda != 0.0 => RowState::Slips,
+            Law::Tie | Law::Unilateral | Law::Friction => RowState::Open,
         }
     }
 }
@@ -162,6 +190,7 @@ impl fmt::Display for Law {
         out.write_str(match self {
             Law::Tie => "tie",
             Law::Unilateral => "contact",
+            Law::Friction => "friction",
         })
     }
 }

@@ -4,10 +4,12 @@
 //! data are distributed: a rank holds its own subdomains and provides its own rows.
 
 mod build;
+mod friction;
 pub mod idle;
 mod law;
 mod rows;
 
+pub use friction::{FrictionBound, FrictionNode};
 pub use idle::Idle;
 pub use law::{Law, RowState, SentLaw};
 pub use rows::{BodyNode, Row, RowLabel, RowSource, SolvedRow};
@@ -130,6 +132,8 @@ pub struct Problem {
     pub local: Vec<Subdomain>,
     /// The rows that this rank provides. Each row of the problem is provided by exactly one rank.
     pub rows: Vec<Row>,
+    /// The nodes with friction among these rows.
+    pub friction: Vec<FrictionNode>,
 }
 
 impl Problem {

@@ -144,7 +144,7 @@ impl SolvedRow {
         SolvedRow {
             label: row.label,
             law: row.law,
-            state: row.law.state(holds),
+            state: row.law.state(multiplier, holds),
             multiplier,
             gap: -excess,
             block: row.block,
@@ -187,7 +187,10 @@ impl SolvedRow {
 
     /// Whether it holds, as an equation or as an inequality.
     pub fn holds(&self) -> bool {
-        self.state != RowState::Open
+        matches!(
+            self.state,
+            RowState::Holds | RowState::Tied | RowState::Sticks
+        )
     }
 
     /// The rows of all ranks on the first one, by rank; none on the others. Collective.
@@ -293,7 +296,7 @@ impl SentRow {
                 area: self.area,
             },
             law,
-            state: law.state(self.holds != 0),
+            state: law.state(self.multiplier, self.holds != 0),
             multiplier: self.multiplier,
             gap: self.gap,
             block: self.block,

@@ -7,6 +7,7 @@ mod bodies;
 mod certified;
 mod elastic;
 mod failed;
+mod friction;
 mod jumps;
 mod many;
 mod mortar;

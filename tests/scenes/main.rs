@@ -14,6 +14,7 @@ mod copies;
 mod counts;
 mod error_locations;
 mod examples;
+mod friction;
 mod gallery;
 mod guided;
 mod hidden_motions;

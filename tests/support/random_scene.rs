@@ -150,6 +150,7 @@ pub fn spec(seed: u64) -> SceneSpec {
             multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
+            friction: None,
             ramp: None,
             location: base::Location::default(),
         });
@@ -314,6 +315,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
+            friction: None,
             ramp: None,
             location: base::Location::default(),
         });
@@ -374,6 +376,7 @@ fn obstacles(rng: &mut Rng, spec: &mut SceneSpec, tame: bool) {
             distance: None,
             adjust: 0.0,
             gap: Profile::constant(0.0),
+            friction: None,
             ramp: None,
             location: base::Location::default(),
         });

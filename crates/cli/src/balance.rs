@@ -85,7 +85,7 @@ pub(super) fn bodies(
         all.for_each(|(to, r)| *to += r);
     }
     let mut touched = Vec::new();
-    RowForces::new(session, scene)?.each(solution.rows(), |_, row, at, force| {
+    RowForces::new(session, scene)?.each(solution, |_, row, at, force| {
         let BodyNode { body: b, node } = at;
         let body = &scene.bodies[b];
         let to = &mut sums[b];

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::friction;
 use super::smoothed::smoothed;
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::solution::{SolvedRow, Step};
@@ -61,8 +62,12 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
 /// Sliding by interface and obstacle; those that do not touch do not slide.
 pub type Slides = BTreeMap<RowSource, Sliding>;
 
-/// Forces per interface and obstacle, and the sliding where it is known.
-pub fn forces(scene: &Scene, rows: &[SolvedRow], slides: Option<&Slides>) -> Vec<InterfaceForce> {
+/// Forces per interface and obstacle, with friction, and the sliding where it is known.
+pub fn forces(
+    scene: &Scene,
+    (rows, tangential): (&[SolvedRow], &[SolvedRow]),
+    slides: Option<&Slides>,
+) -> Vec<InterfaceForce> {
     by_source(rows)
         .map(|rows| {
             let some = rows.iter().any(|r| r.is_inequality());
@@ -70,6 +75,7 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow], slides: Option<&Slides>) -> Vec
             let least = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::INFINITY, f64::min);
             let most =
                 |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
+            let own = friction::of_source(tangential, rows[0].label.source);
             let slid = slides.filter(|_| some);
             let slid = slid.map(|all| all.get(&rows[0].label.source).copied().unwrap_or_default());
             InterfaceForce {
@@ -94,6 +100,8 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow], slides: Option<&Slides>) -> Vec
                     touching.map(|r| r.label.area).sum()
                 }),
                 slid: recorded(slid),
+                friction: friction::force(scene, own),
+                extremes: friction::extremes(own),
             }
         })
         .collect()
@@ -163,11 +171,16 @@ pub(super) fn nodes(
             Vec::new()
         },
         smoothed,
+        friction: Vec::new(),
     }
 }
 
 /// The profiles of multiplier and gap along every interface that has inequalities.
-pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceProfile> {
+pub fn profiles(
+    scene: &Scene,
+    rows: &[SolvedRow],
+    tangential: &[SolvedRow],
+) -> Vec<InterfaceProfile> {
     let profile = |(rows, smoothed): (&[SolvedRow], Vec<f64>)| {
         let along = match rows[0].label.source {
             RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
@@ -181,7 +194,10 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceProfile> {
         let body = rows[0].body();
         let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
         InterfaceProfile {
-            nodes: nodes(scene, (rows, smoothed), scene.has_pressure()),
+            nodes: InterfaceNodes {
+                friction: friction::along(rows, tangential),
+                ..nodes(scene, (rows, smoothed), scene.has_pressure())
+            },
             label: if curved { "t" } else { ["x", "y"][along] }.into(),
         }
     };

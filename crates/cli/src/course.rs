@@ -6,7 +6,7 @@ use super::early::Early;
 use super::events::Events;
 use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
-use super::{balance, contact};
+use super::{balance, contact, friction};
 use crate::checkpoint::Checkpoints;
 use base::Result;
 use fetifeti::solution::SolvedRow;
@@ -19,6 +19,7 @@ use report::json::contact::{BodyBalance, LoadStep, OuterStep};
 use report::paraview::pvd::Pvd;
 use report::progress::ProgressLine;
 use scene::sliding::Sliding;
+use scene::Scene;
 use scene::Stepper;
 
 /// The results over the load steps.
@@ -39,6 +40,8 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
+    /// Tangential rows of nodes with friction on rank 0.
+    pub tangential: Vec<SolvedRow>,
     /// The forces on every body in balance, on rank 0.
     pub balances: Vec<BodyBalance>,
     /// A warning about the bodies that are not in balance, on rank 0.
@@ -134,6 +137,7 @@ pub(super) fn follow(
             load_steps: Vec::new(),
             solve_seconds: seconds[0],
             recover_seconds: seconds[1],
+            tangential: friction::tangential(session, &solved.solution),
             solution: solved.solution,
             rows,
             balances: balances.into_iter().map(|b| b.record).collect(),
@@ -145,7 +149,7 @@ pub(super) fn follow(
             now.load_steps.push(LoadStep {
                 setup_seconds: solved.renewal.map(|r| r.seconds),
                 factored: solved.renewal.map(|r| r.factored),
-                ..load_step_record(t, &now)
+                ..load_step_record(scene, t, &now)
             });
         }
         if let (Some(dir), Some(pvd), Some(t)) = (&destination.out, &mut pvd, solved.time) {
@@ -204,7 +208,7 @@ fn step_name(step: usize) -> String {
 }
 
 /// The record of a load step; forces are known on rank 0.
-fn load_step_record(t: f64, course: &Course) -> LoadStep {
+fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
     let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
     let all = course.slides.as_ref().map(|all| all.values().copied());
     let slid = all.map(|all| all.fold(Sliding::default(), Sliding::max));
@@ -216,6 +220,7 @@ fn load_step_record(t: f64, course: &Course) -> LoadStep {
         energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
         slid: contact::recorded(slid),
+        friction: friction::force(scene, &course.tangential),
         ..LoadStep::default()
     }
 }

@@ -15,6 +15,7 @@ mod early;
 mod events;
 mod fields;
 mod first_rank;
+mod friction;
 mod inputs;
 mod maps;
 mod pages;

@@ -252,7 +252,11 @@ fn contact_report(
         factorisations: counts[0] as usize,
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
-        interfaces: contact::forces(scene, &course.rows, course.slides.as_ref()),
+        interfaces: contact::forces(
+            scene,
+            (&course.rows, &course.tangential),
+            course.slides.as_ref(),
+        ),
         bodies: course.balances.clone(),
         load_steps: course.load_steps.clone(),
         updated: scene.is_renewed(),

@@ -3,6 +3,7 @@
 use base::Result;
 use fetifeti::problem::BodyNode;
 use fetifeti::solution::SolvedRow;
+use fetifeti::Solution;
 use petsc::Session;
 use scene::{distribution, RowTerms, Scene};
 
@@ -21,19 +22,18 @@ impl<'a> RowForces<'a> {
         })
     }
 
-    /// Calls `f` with the terms of every row that holds, and with the force at each of them. `rows` are those of the
-    /// solution, which are in the order of the scene's. In scalar problems the first component of a force is it.
+    /// Calls `f` with the terms of every row with a force, tangential rows included, and with the force at each of
+    /// them. In scalar problems the first component of a force is it.
     pub fn each(
         &self,
-        rows: &[SolvedRow],
+        solution: &Solution,
         mut f: impl FnMut(&SolvedRow, &RowTerms, BodyNode, [f64; 3]),
     ) {
-        let terms = self.scene.row_terms(&self.owns);
-        for (row, all) in rows
-            .iter()
-            .zip(terms)
-            .filter(|(row, _)| row.multiplier != 0.0)
-        {
+        let rows = solution.rows().iter();
+        let tangential = solution.tangential_rows().iter();
+        let rows = rows.zip(self.scene.row_terms(&self.owns));
+        let tangential = tangential.zip(self.scene.tangential_terms(&self.owns));
+        for (row, all) in { rows.chain(tangential) }.filter(|(row, _)| row.multiplier != 0.0) {
             for &(at, coefficients) in &all.terms {
                 f(row, &all, at, coefficients.map(|v| -row.multiplier * v));
             }

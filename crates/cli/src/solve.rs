@@ -283,7 +283,11 @@ fn write_fields(
         picture::write(scene, fields, &course.rows, course.step, dir)?;
         if solver.facts().inequalities > 0 {
             match scene.dim() {
-                2 => profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?,
+                2 => profile::write(
+                    &contact::profiles(scene, &course.rows, &course.tangential),
+                    &scene.title,
+                    dir,
+                )?,
                 _ => contact_map::write(&maps::of(scene, &course.rows), &scene.title, dir)?,
             };
         }

@@ -57,8 +57,8 @@ impl NodalValues {
         let mut all = NodalValues::gather(session, scene, solver, solved, &of, &add)?;
         // Rows between sides whose nodes do not match have forces at many nodes.
         let mut outgoing = vec![Vec::new(); session.size()];
-        RowForces::new(session, scene)?.each(course.solution.rows(), |row, _, at, force| {
-            if row.is_inequality() {
+        RowForces::new(session, scene)?.each(&course.solution, |row, _, at, force| {
+            if row.is_inequality() || row.law.is_friction() {
                 let BodyNode { body, node } = at;
                 outgoing[0].push(NodeForce { body, node, force });
             }

@@ -23,6 +23,19 @@ pub struct InterfaceNodes {
     pub area: Vec<f64>,
     /// Pressures without oscillations; empty where they are none but those of the forces.
     pub smoothed: Vec<f64>,
+    /// Friction node by node; empty without friction.
+    pub friction: Vec<NodeFriction>,
+}
+
+/// Friction at a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeFriction {
+    /// `open`, `stick`, `slip` or `tied`.
+    pub state: &'static str,
+    /// The shear stress of friction on the first body, or on the body of an obstacle; NaN where a node has no area.
+    pub shear: [f64; 3],
+    /// The slip of the first body beside the other side in the load step.
+    pub slip: [f64; 3],
 }
 
 impl InterfaceNodes {
@@ -41,6 +54,7 @@ impl InterfaceNodes {
             (self.active.len(), "states"),
             (areas, "areas"),
             (self.smoothed.len().max(n), "smoothed pressures"),
+            (self.friction.len().max(n), "nodes with friction"),
         ];
         match lists.iter().chain(more).find(|list| list.0 != n) {
             None => Ok(()),
@@ -80,10 +94,12 @@ impl InterfaceNodes {
 
 /// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area;
 /// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures. Where an
-/// interface has smoothed pressures, all of them have a column pressure_smoothed.
+/// interface has smoothed pressures, all of them have a column pressure_smoothed. Where one has friction, all of them
+/// have the columns state, shear_x, … and slip_x, …, which are empty on the others.
 pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
     let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
     let smoothed = interfaces.iter().any(|(i, _)| !i.smoothed.is_empty());
+    let friction = interfaces.iter().any(|(i, _)| !i.friction.is_empty());
     let nodes = interfaces.iter();
     let nodes = nodes.flat_map(|(i, pressure)| (0..i.t.len()).map(move |k| (*i, pressure, k)));
     Table::of(nodes)
@@ -102,6 +118,22 @@ pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, soli
             t.exact("pressure_smoothed", |(i, pressure, k)| {
                 i.smoothed.get(*k).or(pressure.get(*k)).copied()
             })
+        })
+        .when(friction, |t| {
+            let at = |i: &InterfaceNodes, k: usize| i.friction.get(k).copied();
+            let mut t = t.exact("state", move |(i, _, k)| at(i, *k).map(|f| f.state));
+            let axes = || ["x", "y", "z"].into_iter().take(if solid { 3 } else { 2 });
+            for (c, axis) in axes().enumerate() {
+                t = t.exact(format!("shear_{axis}"), move |(i, _, k)| {
+                    at(i, *k).map(|f| f.shear[c])
+                });
+            }
+            for (c, axis) in axes().enumerate() {
+                t = t.exact(format!("slip_{axis}"), move |(i, _, k)| {
+                    at(i, *k).map(|f| f.slip[c])
+                });
+            }
+            t
         })
         .table()
 }

@@ -121,6 +121,7 @@ impl Bodies {
                 active: shape.iter().map(|&v| v > 0.0).collect(),
                 area: Vec::new(),
                 smoothed: Vec::new(),
+                friction: Vec::new(),
             };
             InterfaceProfile {
                 nodes,

@@ -15,6 +15,7 @@ use super::model::steps::Steps;
 use super::part::RankPart;
 use super::renewal::{may_renew, Renewal};
 use super::rows::all::{Joined, SceneRows};
+use super::rows::friction::NodeFriction;
 use super::rows::obstacles::{Obstacle, Standing};
 use super::rows::points::InterfacePoint;
 use super::rows::row::Row;
@@ -22,6 +23,7 @@ use super::{axis, cut, read, rows, validate};
 use crate::part;
 use base::Result;
 use elements::form::Form;
+use fetifeti::problem::RowSource;
 use mesh::text;
 use std::path::Path;
 use std::sync::Arc;
@@ -70,6 +72,8 @@ pub struct Scene {
     /// displacements; then rows between sides whose nodes do not match. [`Scene::solver_rows`] makes rows of B
     /// of them.
     pub rows: Vec<Row>,
+    /// Nodes with friction, in the order of their normal rows.
+    pub friction: Vec<NodeFriction>,
     /// Points of interest.
     pub probes: Vec<ProbeSpec>,
     /// Rigid obstacles, by body, side and bound.
@@ -209,6 +213,16 @@ impl Scene {
             rows,
             notes,
         } = joined.rows(&mut bodies, &steps, None)?;
+        let t = |source: RowSource, node: usize| match source {
+            RowSource::Interface(k) => interfaces[k].shared[node].t[0],
+            RowSource::Obstacle(k) => obstacles[k].t(node)[0],
+            RowSource::Equation(_) => 0.0,
+        };
+        let motion = |source: RowSource| match source {
+            RowSource::Obstacle(k) => obstacles[k].motion,
+            RowSource::Interface(_) | RowSource::Equation(_) => [0.0; 3],
+        };
+        let friction = rows::friction::collect(&bodies, &spec, &rows, &t, &motion)?;
         obstacles.iter_mut().for_each(Obstacle::finish);
         let renewal = written
             .map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &obstacles, &rows));
@@ -238,6 +252,7 @@ impl Scene {
             interfaces,
             points,
             rows,
+            friction,
             probes: spec.probes,
             obstacles,
             steps,

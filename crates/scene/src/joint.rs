@@ -32,7 +32,8 @@ impl Scene {
         let names = self.bodies.iter().map(|b| b.spec.name.as_str());
         let mut problem = Problem::new(names, self.n_subdomains())
             .with_subdomains(local?)
-            .with_rows(self.solver_rows(owns));
+            .with_rows(self.solver_rows(owns))
+            .with_friction(self.friction_nodes(owns));
         (problem.ragged, problem.weak) = (self.is_ragged(), self.weak_bodies());
         Ok(problem)
     }

@@ -27,6 +27,7 @@ use crate::feti::krylov::iterate::{IterateMonitor, IterationControl, KrylovRun};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
+use crate::feti::projector::balance::KernelLoad;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::status::Status;
 use crate::Result;
@@ -47,7 +48,7 @@ pub(super) struct ActiveSet<'a> {
     settings: &'a ContactSettings,
     repairs: Repairs<'a>,
     pub state: State,
-    at: Iterate,
+    pub at: Iterate,
     /// Whether the residual of `at` belongs to its λ and the set that holds.
     fresh: bool,
     /// The largest displacement in the last step.
@@ -56,6 +57,8 @@ pub(super) struct ActiveSet<'a> {
     pub exact: bool,
     /// Whether the next step is solved to the end.
     pub tight: bool,
+    /// Factor on the reduction of the residual while the set changes.
+    pub finer: f64,
     /// Whether rows that pull end that solve early.
     watched: bool,
     /// A row that does not hold is violated only if its gap is above this, relative to the largest displacement.
@@ -101,6 +104,7 @@ impl<'a> ActiveSet<'a> {
             tight: false,
             watched: true,
             exact: false,
+            finer: 1.0,
             open: settings.tuning.rounding,
             length: 0.0,
             state,
@@ -152,7 +156,7 @@ impl<'a> ActiveSet<'a> {
             (false, true) => tuning.misled_reduction,
             (false, false) => 1.0,
         };
-        factor * self.settings.inner_rtol
+        factor * self.finer * self.settings.inner_rtol
     }
 
     /// The tolerance of the residual, from the displacements of the last step.
@@ -268,6 +272,31 @@ impl<'a> ActiveSet<'a> {
             let inside = self.at.loads.largest_inside(&self.method.dual());
             !beyond(inside.max(self.length))
         }
+    }
+
+    /// Notes that the loads are others than those of the last step.
+    pub fn renewed(&mut self) {
+        self.fresh = false;
+    }
+
+    /// Puts rows that `may` come back into `active` so that the load drives no body away. Collective.
+    ///
+    /// # Errors
+    /// Bodies that the load pushes away for ever.
+    pub fn hold(
+        &self,
+        active: &mut [bool],
+        load: &KernelLoad,
+        may: &dyn Fn(usize) -> bool,
+    ) -> Result<usize> {
+        let (gaps, law) = (&self.gaps, &self.method.dual().stiffness.jump.law);
+        // Of nodes that slip the one that has slipped least: the others then slip on in their directions.
+        let score = |r: usize| match law[r].is_friction() {
+            true => -gaps[r].abs(),
+            false => self.state.lambda[r] + gaps[r],
+        };
+        let dual = self.method.dual();
+        self.repairs.hold_by(&dual, active, &score, load, may)
     }
 
     /// The solution at the present state of the loop, after these steps. Collective.

@@ -51,6 +51,8 @@ pub struct Jump {
     pub initial: Vec<bool>,
     /// Z^k on the owned rows: whether the row holds.
     pub active: Vec<bool>,
+    /// The multiplier of each owned row that does not hold and has a law with given multipliers; empty without any.
+    pub given_multipliers: Vec<f64>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
     /// The scalings of blocks so far.

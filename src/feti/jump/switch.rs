@@ -34,9 +34,9 @@ impl Jump {
 
     /// Gives the owned rows that do not hold in `active` the multiplier of a released row.
     pub fn release(&self, active: &[bool], lambda: &mut [f64]) {
-        let rows = lambda.iter_mut().zip(active).zip(&self.law);
-        for ((lambda, _), law) in rows.filter(|((_, on), _)| !**on) {
-            *lambda = law.released();
+        for i in (0..lambda.len()).filter(|&i| !active[i]) {
+            let given = self.given_multipliers.get(i).copied();
+            lambda[i] = self.law[i].released(given.unwrap_or(0.0));
         }
     }
 

@@ -8,6 +8,7 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::Problem;
+use crate::Result;
 use cholesky::lanes::LANES;
 use parallel::exchange::highest;
 
@@ -47,6 +48,31 @@ impl Loads {
             kernel,
             jumps,
         }
+    }
+
+    /// These loads of `f` with multipliers of rows that do not hold, which load the bodies with −Bᵀ λ. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn with_multipliers(&self, dual: &Dual, f: &[&[f64]], lambda: &[f64]) -> Result<Loads> {
+        let stiffness = &dual.stiffness;
+        let multipliers = dual.multipliers()?;
+        multipliers.array_mut()?.copy_from_slice(lambda);
+        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        stiffness.dual_halo.fetch(&multipliers, &mut ghost)?;
+        let mut g = self.g.clone();
+        for (j, g) in g.iter_mut().enumerate() {
+            let mut v = vec![0.0; g.len()];
+            let columns = stiffness.jump.columns.of(j);
+            columns.b_transpose_all(&ghost, &mut v);
+            g.iter_mut().zip(&v).for_each(|(g, v)| *g -= v);
+        }
+        Ok(Loads {
+            interiors: self.interiors.clone(),
+            kernel: dual.natural.kernel_load(dual.comm(), f, &g),
+            jumps: self.jumps.clone(),
+            g,
+        })
     }
 
     /// K_II⁻¹ f_I of local subdomain `j`, zero on Γ.

@@ -222,7 +222,8 @@ pub(super) fn remainder(
     let mut forces = Vec::new();
     for (j, (sub, w)) in problem.local.iter().zip(&mut work).enumerate() {
         let interface = &stiffness.locals[j].gamma().interface;
-        stiffness.jump.columns.of(j).b_transpose(&ghost, &mut w.v);
+        let columns = stiffness.jump.columns.of(j);
+        columns.b_transpose_all(&ghost, &mut w.v);
         let mut f = sub.f.clone();
         for (&i, v) in interface.iter().zip(&w.v) {
             f[i as usize] -= v;

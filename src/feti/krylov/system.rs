@@ -105,6 +105,11 @@ impl DualSystem {
         self.dual.borrow_mut().set_compliance(compliance);
     }
 
+    /// Replaces the multipliers of rows that do not hold and have a law with given ones; empty: they have none.
+    pub(crate) fn set_given_multipliers(&self, given: Vec<f64>) {
+        self.dual.borrow_mut().stiffness.jump.given_multipliers = given;
+    }
+
     /// Replaces the right-hand sides of the rows.
     pub(crate) fn set_gaps(&self, gaps: &[f64]) {
         self.dual.borrow_mut().stiffness.jump.set_gaps(gaps);

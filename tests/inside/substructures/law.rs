@@ -2,7 +2,7 @@
 
 use super::*;
 
-const ALL: [Law; 2] = [Law::Tie, Law::Unilateral];
+const ALL: [Law; 3] = [Law::Tie, Law::Unilateral, Law::Friction];
 const VALUES: [f64; 7] = [-3.0, -1e-30, -0.0, 0.0, 1e-30, 0.5, 4.0];
 
 #[test]
@@ -41,7 +41,11 @@ fn multipliers_and_gaps_are_dual() {
             }
         }
         // A released row has an admissible multiplier, and nothing violates an equation that does not hold.
-        assert_eq!(law.pull(law.released()), 0.0);
+        for given in VALUES {
+            let released = law.released(given);
+            assert_eq!(law.pull(released), 0.0);
+            assert!(released == 0.0 || law.is_friction() && released == given);
+        }
         assert_eq!(law.is_inequality(), law.violation(1.0, false) > 0.0);
     }
 }
@@ -54,7 +58,11 @@ fn a_tie_bears_all_and_a_contact_pushes() {
         assert_eq!(Law::Unilateral.bears(x), x > 0.0);
         assert_eq!(Law::Unilateral.resistance(x), x);
     }
-    let states = ALL.map(|law| [law.state(true), law.state(false)]);
-    let [tie, contact] = [RowState::Tied, RowState::Holds];
-    assert_eq!(states, [tie, contact].map(|on| [on, RowState::Open]));
+    let states =
+        ALL.map(|law| [(1.0, true), (1.0, false), (0.0, false)].map(|(l, on)| law.state(l, on)));
+    let [tie, contact, open] = [RowState::Tied, RowState::Holds, RowState::Open];
+    let friction = [RowState::Sticks, RowState::Slips, open];
+    assert_eq!(states, [[tie, open, open], [contact, open, open], friction]);
+    let decided = ALL.map(Law::is_decided);
+    assert_eq!(decided, [false, true, true]);
 }

@@ -26,6 +26,8 @@ fn rows_travel_unchanged() {
         (Law::Unilateral, false, RowState::Open),
         (Law::Tie, true, RowState::Tied),
         (Law::Tie, false, RowState::Open),
+        (Law::Friction, true, RowState::Sticks),
+        (Law::Friction, false, RowState::Slips),
     ] {
         let given = Row {
             law,

@@ -90,9 +90,8 @@ pub struct BaselinePlan {
 impl BaselinePlan {
     /// The plan according to the options.
     ///
-    /// # Errors
-    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose load steps renew
-    /// its contacts.
+    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene with friction or
+    /// with load steps that renew its contacts.
     pub fn new(
         session: &Session,
         scene: &Scene,
@@ -103,6 +102,13 @@ impl BaselinePlan {
             return Err(Error::input(format!(
                 "the scene \"{}\" has `update` in [steps]: its contacts follow from the load steps before, and methods \
                  are compared on one step alone (a scene without `update` was expected)",
+                scene.title
+            )));
+        }
+        if scene.has_friction() {
+            return Err(Error::input(format!(
+                "the scene \"{}\" has friction, which the other methods do not have here (a scene without friction \
+                 was expected)",
                 scene.title
             )));
         }

@@ -5,6 +5,7 @@
 //! `resultant` is their vector sum. As in [`crate::json`], a number that is unknown or not finite is `null` and
 //! never NaN.
 
+use super::friction::{FrictionExtremes, FrictionForce};
 use super::number;
 use super::spectrum::Spectrum;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -147,6 +148,12 @@ pub struct InterfaceForce {
     /// Elasticity, where sides may touch: how far they slide.
     #[serde(flatten)]
     pub slid: Slid,
+    /// Where there is friction: its force and the states of nodes.
+    #[serde(flatten)]
+    pub friction: Option<FrictionForce>,
+    /// Where there is friction: its largest values.
+    #[serde(flatten)]
+    pub extremes: Option<FrictionExtremes>,
 }
 
 /// How far sides that touch slide along each other and turn.
@@ -267,6 +274,9 @@ pub struct LoadStep {
     /// Elasticity: the largest values of all interfaces at the end of the step.
     #[serde(flatten)]
     pub slid: Slid,
+    /// Where there is friction: that of all interfaces.
+    #[serde(flatten)]
+    pub friction: Option<FrictionForce>,
 }
 
 #[cfg(test)]

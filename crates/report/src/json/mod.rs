@@ -7,6 +7,7 @@ mod bench;
 pub mod certified;
 mod compare;
 pub mod contact;
+pub mod friction;
 mod number;
 mod plan;
 pub mod probes;

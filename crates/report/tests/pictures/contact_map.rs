@@ -32,6 +32,7 @@ fn sample(name: &str, n: usize, size: f64) -> ContactMap {
             active: at.iter().map(|p| pressure(p) > 0.0).collect(),
             area,
             smoothed: Vec::new(),
+            friction: Vec::new(),
         },
         labels: ["x".into(), "z".into()],
         cells: (0..n * n).map(cell).collect(),

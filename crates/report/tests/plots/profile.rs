@@ -17,6 +17,7 @@ fn sample(name: &str, n: usize, size: f64) -> InterfaceProfile {
         area: Vec::new(),
         smoothed: Vec::new(),
         t: t.iter().map(|&t| [t, 0.0]).collect(),
+        friction: Vec::new(),
     };
     InterfaceProfile {
         nodes,

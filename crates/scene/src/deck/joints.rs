@@ -113,6 +113,7 @@ pub(super) fn contacts(
                 adjust
             },
             adjusted,
+            friction: None,
             ramp: None,
             location: at(deck, pair.place),
         });

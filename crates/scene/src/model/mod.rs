@@ -5,6 +5,7 @@ pub mod cells;
 pub mod entry;
 pub mod expr;
 pub mod field;
+pub mod friction;
 pub mod grid;
 pub mod joints;
 pub mod map;

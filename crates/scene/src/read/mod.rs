@@ -5,6 +5,7 @@ mod conditions;
 mod document;
 mod fields;
 mod form;
+mod friction;
 mod groups;
 mod instances;
 mod mesh;

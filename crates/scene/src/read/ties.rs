@@ -67,6 +67,7 @@ impl SceneReader {
         let distance = section.read("distance", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[contact]]")?;
         let gap = section.read("gap", |item| self.profile(item))?;
+        let friction = self.friction(&mut section)?;
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
         Ok(ContactSpec {
@@ -78,6 +79,7 @@ impl SceneReader {
             multipliers,
             adjust: adjust.unwrap_or(0.0),
             adjusted: Vec::new(),
+            friction,
             ramp,
             location: item.location(),
         })

@@ -30,6 +30,8 @@ pub mod entry;
 pub mod equations;
 mod facing;
 pub mod facing_surfaces;
+pub mod friction;
+mod friction_nodes;
 pub mod left_out;
 pub mod links;
 mod meeting;

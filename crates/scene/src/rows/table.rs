@@ -1,9 +1,11 @@
 //! The rows of B_gl for ties, contacts and obstacles, with their labels.
 
 use super::areas::Areas;
+use super::friction::NodeFriction;
 use super::rounding::Rounding;
 use super::row::Row;
 use crate::checked::Scene;
+use crate::model::entry::EntryId;
 use crate::model::steps::Factors;
 use crate::rows::at_node::AtNode;
 use base::Result;
@@ -13,7 +15,8 @@ impl Scene {
     /// The rows of B_gl at points whose lowest subdomain satisfies `owns`, with the right-hand sides of the last load
     /// step. There are rows u_a − u_b = 0 for every tied pair of bodies a < b, open rows at the candidate contact nodes
     /// of faces that are tied in part, rows u_a − u_b ≤ g in contact (a is the first body of the pair), and rows u ≤ g
-    /// and −u ≤ −g beside obstacles. Given values are moved to the right-hand side.
+    /// and −u ≤ −g beside obstacles; then the tangential rows of nodes with friction. Given values are moved to the
+    /// right-hand side.
     pub fn solver_rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<fetifeti::Row> {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
@@ -28,7 +31,13 @@ impl Scene {
             out.law = row.law;
             out
         };
-        self.rows_of(owns).map(joined).collect()
+        let mut out: Vec<fetifeti::Row> = Vec::new();
+        let tangential = self.friction_of(owns).flat_map(|f| &f.tangential);
+        out.extend(self.rows_of(owns).chain(tangential).map(joined));
+        if let Ok(drags) = self.drags(owns, self.n_steps() - 1) {
+            out.iter_mut().zip(drags).for_each(|(row, d)| row.gap += d);
+        }
+        out
     }
 
     /// The rows that the owner of some subdomains provides, in their order.
@@ -47,9 +56,42 @@ impl Scene {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.
     pub fn gaps(&self, owns: &dyn Fn(usize) -> bool, step: usize) -> Result<Vec<f64>> {
-        let factors = Factors::of(&self.steps, step)?;
+        let factors = self.last_two(step)?;
         let rows = self.rows_of(owns);
-        Ok(rows.map(|row| row.right_hand_side(&factors)).collect())
+        let mut out: Vec<f64> = rows.map(|row| row.right_hand_side(&factors.1)).collect();
+        for friction in self.friction_of(owns) {
+            let drags = friction.drags(&factors, self.entry_of(friction));
+            let rows = friction.tangential.iter().zip(drags);
+            out.extend(rows.map(|(row, drag)| row.right_hand_side(&factors.1) + drag));
+        }
+        Ok(out)
+    }
+
+    /// How far obstacles drag the nodes of the rows of [`Scene::solver_rows`] at load step `step`, since the step
+    /// before: along tangential rows.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.
+    pub fn drags(&self, owns: &dyn Fn(usize) -> bool, step: usize) -> Result<Vec<f64>> {
+        let factors = self.last_two(step)?;
+        let mut out = vec![0.0; self.rows_of(owns).count()];
+        for friction in self.friction_of(owns) {
+            out.extend(friction.drags(&factors, self.entry_of(friction)));
+        }
+        Ok(out)
+    }
+
+    /// The factors of the load step before a step, and of the step.
+    fn last_two(&self, step: usize) -> Result<(Option<Factors<'_>>, Factors<'_>)> {
+        let before = step.checked_sub(1);
+        let before = before.map(|s| Factors::of(&self.steps, s)).transpose()?;
+        Ok((before, Factors::of(&self.steps, step)?))
+    }
+
+    /// The entry of a node with friction.
+    fn entry_of(&self, friction: &NodeFriction) -> Option<EntryId> {
+        let limit = self.rows[friction.normal].limits().first();
+        limit.and_then(|l| l.entry)
     }
 
     /// Whether there is an inequality; the solver then runs an outer loop.

@@ -18,13 +18,22 @@ pub struct RowTerms {
 }
 
 impl Scene {
-    /// The terms of the rows of [`Scene::solver_rows`], in their order. The force of a multiplier λ on a term is −λ
-    /// times the coefficients.
+    /// The terms of the rows of [`Scene::solver_rows`] but the tangential ones, in their order. The force of a
+    /// multiplier λ on a term is −λ times the coefficients.
     pub fn row_terms<'s>(
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
     ) -> impl Iterator<Item = RowTerms> + 's {
         self.rows_of(owns).map(|row| self.all_terms(row))
+    }
+
+    /// The terms of the tangential rows of [`Scene::solver_rows`], in their order.
+    pub fn tangential_terms<'s>(
+        &'s self,
+        owns: &'s dyn Fn(usize) -> bool,
+    ) -> impl Iterator<Item = RowTerms> + 's {
+        let rows = self.friction_of(owns).flat_map(|f| &f.tangential);
+        rows.map(|row| self.all_terms(row))
     }
 
     fn all_terms(&self, row: &Row) -> RowTerms {

@@ -40,6 +40,7 @@ impl GlobalState {
         let all = checked_sum(self.local.iter().copied().chain(contact));
         contact == Some(self.all.active.len() as u64)
             && contact == Some(self.all.before.len() as u64)
+            && (self.all.slid.is_empty() || contact == Some(self.all.slid.len() as u64))
             && all == Some(self.all.lambda.len() as u64)
     }
 }
@@ -138,10 +139,14 @@ impl RowLayout {
                 .copied()
                 .collect()
         };
+        let some = parts.iter().any(|part| !part.slid.is_empty());
+        let rows = self.blocks.iter().filter(|_| some);
+        let slid = rows.flat_map(|c| &parts[c.rank].slid[c.rows()]);
+        let slid = slid.copied().collect();
         Some(GlobalState {
             local: self.local.iter().map(|c| c.n as u64).collect(),
             blocks: self.blocks.iter().map(|c| (c.key, c.n as u64)).collect(),
-            all: first.on_rows(lambda, set(|s| &s.active), set(|s| &s.before)),
+            all: first.on_rows(lambda, [set(|s| &s.active), set(|s| &s.before)], slid),
         })
     }
 
@@ -155,7 +160,7 @@ impl RowLayout {
         // Equations are always active.
         for set in [&mut state.active, &mut state.before] {
             for (r, on) in set.iter_mut().enumerate() {
-                if !self.law[r].is_inequality() {
+                if !self.law[r].is_decided() {
                     *on = self.initial[r];
                 }
             }
@@ -166,7 +171,11 @@ impl RowLayout {
     /// The states of all ranks.
     fn deal(&self, global: &GlobalState) -> Vec<State> {
         let all = &global.all;
-        let part = |&n: &usize| all.on_rows(vec![0.0; n], vec![true; n], vec![true; n]);
+        let some = !all.slid.is_empty();
+        let part = |&n: &usize| {
+            let slid = vec![0.0; if some { n } else { 0 }];
+            all.on_rows(vec![0.0; n], [vec![true; n], vec![true; n]], slid)
+        };
         let mut out: Vec<State> = self.owned.iter().map(part).collect();
         let mut next = 0;
         for c in self.local.iter().chain(&self.blocks) {
@@ -177,6 +186,9 @@ impl RowLayout {
         for c in &self.blocks {
             out[c.rank].active[c.rows()].copy_from_slice(&all.active[next..next + c.n]);
             out[c.rank].before[c.rows()].copy_from_slice(&all.before[next..next + c.n]);
+            if some {
+                out[c.rank].slid[c.rows()].copy_from_slice(&all.slid[next..next + c.n]);
+            }
             next += c.n;
         }
         out

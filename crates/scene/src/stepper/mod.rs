@@ -11,10 +11,12 @@
 //! |---|---|
 //! | [`renewed`] | contacts that are renewed at each load step |
 //! | [`state`] | the state from which a stepper resumes, and where it is made |
+//! | [`slid`] | how far sides with friction have slid |
 //! | [`layout`] | removes the ranks from the state of a contact loop, and distributes it again |
 
 mod layout;
 mod renewed;
+mod slid;
 mod state;
 
 use std::collections::BTreeMap;
@@ -249,7 +251,8 @@ impl Stepper {
                 .solver
                 .session()
                 .agree(loads.loads(self.contacts.scene(), self.step))?;
-            let gaps = self.contacts.scene().gaps(&owns, self.step)?;
+            let mut gaps = self.contacts.scene().gaps(&owns, self.step)?;
+            slid::add(&self.solver, self.state.as_ref(), &mut gaps);
             self.solver.set_loads(loads, &gaps);
         }
         Ok(cost)
@@ -285,7 +288,12 @@ impl Stepper {
             solution,
         };
         if out.solution.converged() && step + 1 < self.contacts.scene().n_steps() {
-            self.state = Some(out.solution.warm_start());
+            let mut next = out.solution.warm_start();
+            let owns = |s| self.mine.binary_search(&s).is_ok();
+            let solved = (&self.solver, &out.solution);
+            let before = (step, self.state.as_ref());
+            next.slid = slid::after(self.contacts.scene(), &owns, solved, before)?;
+            self.state = Some(next);
             self.step = step + 1;
             self.phase = Phase::Before;
         }

@@ -1,0 +1,167 @@
+//! A node with friction: whether it is apart, sticks or slips, and what follows from a step.
+//!
+//! ```text
+//!     s = λ_t + k w         stick    |s| ≤ g              slip along d = s/|s|    |s| > g
+//! ```
+
+use crate::feti::jump::operator::Jump;
+use crate::substructures::{FrictionBound, FrictionNode};
+
+/// The state of a node in the equations of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NodeState {
+    /// It does not touch, and has no friction.
+    Apart,
+    /// Its tangential rows hold.
+    Stick,
+    /// The force of friction is given: g along this direction.
+    Slip([f64; 2]),
+}
+
+/// A node with friction among the owned rows.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// The normal row.
+    pub normal: usize,
+    /// The tangential rows.
+    pub tangential: Vec<usize>,
+    bound: FrictionBound,
+    /// k, a force per length of the size of the diagonal of K.
+    stiffness: f64,
+    pub state: NodeState,
+    /// g in the equations.
+    pub g: f64,
+}
+
+/// A row of the solution of a step: its multiplier, its gap B u − c, and whether it is to hold.
+pub struct Step<'s> {
+    pub lambda: &'s [f64],
+    pub gaps: &'s [f64],
+    pub active: &'s [bool],
+}
+
+/// The change of a node in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Whether the node has another state, apart from its direction.
+    pub flips: bool,
+    /// How far its force of friction moves.
+    pub moves: f64,
+}
+
+impl Node {
+    /// The node of these given rows, in the state that multipliers and a set say: a row that does not hold and has a
+    /// multiplier slips. `compliance` is that of the nodes, by owned row.
+    pub fn new(
+        jump: &Jump,
+        given: &FrictionNode,
+        place: impl Fn(usize) -> usize,
+        (lambda, active): (&[f64], &[bool]),
+        compliance: &[f64],
+    ) -> Node {
+        let tangential: Vec<usize> = given.tangential.iter().map(|&r| place(r)).collect();
+        let mut force = [0.0; 2];
+        for (f, &t) in force.iter_mut().zip(&tangential) {
+            *f = lambda[t];
+        }
+        debug_assert!(tangential.iter().all(|&t| jump.law[t].is_friction()));
+        let sticks = tangential.iter().all(|&t| active[t]);
+        let size = length(force);
+        let state = match size {
+            _ if sticks => NodeState::Stick,
+            size if size > 0.0 => NodeState::Slip(force.map(|f| f / size)),
+            _ => NodeState::Apart,
+        };
+        let soft = tangential.iter().map(|&t| compliance[t]);
+        let soft = soft.fold(0.0, f64::max);
+        Node {
+            normal: place(given.normal),
+            tangential,
+            bound: given.bound,
+            stiffness: if soft > 0.0 { 1.0 / soft } else { 0.0 },
+            state,
+            g: size,
+        }
+    }
+
+    /// The given force of friction; zero unless the node slips.
+    pub fn force(&self) -> [f64; 2] {
+        match self.state {
+            NodeState::Slip(d) => d.map(|d| self.g * d),
+            NodeState::Apart | NodeState::Stick => [0.0; 2],
+        }
+    }
+
+    /// λ_t and w after a step.
+    fn tangent(&self, step: &Step<'_>) -> [[f64; 2]; 2] {
+        let mut out = [[0.0; 2]; 2];
+        for (k, &t) in self.tangential.iter().enumerate() {
+            out[0][k] = step.lambda[t];
+            out[1][k] = step.gaps[t];
+        }
+        out
+    }
+
+    /// The state that follows from a step, and its g.
+    fn next(&self, step: &Step<'_>) -> (NodeState, f64) {
+        let g = self.bound.at(step.lambda[self.normal]);
+        if !step.active[self.normal] && !self.bound.acts_apart() {
+            return (NodeState::Apart, 0.0);
+        }
+        // Nothing is known yet of a node that begins to touch.
+        if self.state == NodeState::Apart {
+            return (NodeState::Stick, g);
+        }
+        let [force, slip] = self.tangent(step);
+        let s = [0, 1].map(|k| force[k] + self.stiffness * slip[k]);
+        let size = length(s);
+        // A node that would slip the other way sticks first: all nodes of a body that slides too far would turn.
+        let turns = match self.state {
+            NodeState::Slip(d) => d[0] * s[0] + d[1] * s[1] < 0.0,
+            NodeState::Apart | NodeState::Stick => false,
+        };
+        let state = if size <= g || turns {
+            NodeState::Stick
+        } else {
+            NodeState::Slip(s.map(|s| s / size))
+        };
+        (state, g)
+    }
+
+    /// Takes the node to the state that follows from a step.
+    pub fn update(&mut self, step: &Step<'_>) -> Change {
+        let before = self.force();
+        let (state, g) = self.next(step);
+        let kind = std::mem::discriminant(&self.state);
+        let flips = kind != std::mem::discriminant(&state);
+        (self.state, self.g) = (state, g);
+        let now = self.force();
+        Change {
+            flips,
+            moves: length([now[0] - before[0], now[1] - before[1]]),
+        }
+    }
+
+    /// How far a solution is from the law of friction: a force beyond g where the node sticks, another force than g
+    /// along the slip where it slips. In the unit of a force.
+    pub fn error(&self, step: &Step<'_>) -> f64 {
+        let [force, slip] = self.tangent(step);
+        let g = self.bound.at(step.lambda[self.normal]);
+        match self.state {
+            NodeState::Apart => 0.0,
+            NodeState::Stick => (length(force) - g).max(0.0),
+            NodeState::Slip(d) => {
+                let back = -self.stiffness * (d[0] * slip[0] + d[1] * slip[1]);
+                (length(force) - g).abs().max(back)
+            }
+        }
+    }
+}
+
+fn length(v: [f64; 2]) -> f64 {
+    v[0].hypot(v[1])
+}
+
+#[cfg(test)]
+#[path = "../../../tests/inside/contact/friction/node.rs"]
+mod tests;

@@ -1,0 +1,180 @@
+//! Friction against values of an independent computation (tests/data/friction.json: conic programs, polished to
+//! rounding), and against closed forms.
+
+use crate::support::checks::number;
+use crate::support::session::with_session;
+use crate::support::{mpi, program};
+use fetifeti::error::ErrorKind;
+use fetifeti::solution::RowState;
+use fetifeti::Result;
+use mpi::Scratch;
+use program::run_fetifeti;
+use scene::{Scene, Stepper};
+use serde_json::Value;
+
+fn oracle() -> serde_json::Map<String, Value> {
+    let text = include_str!("../data/friction.json");
+    serde_json::from_str(text).expect("the oracle is JSON")
+}
+
+/// The cases of a scene of a kind that is solved: in the plane, with hard contact.
+fn cases() -> impl Iterator<Item = (String, Value)> {
+    let solved = |(_, case): &(String, Value)| {
+        let text = case["scene"].as_str().expect("a text");
+        !text.contains("dimension = 3") && !text.contains("stiffness")
+    };
+    oracle().into_iter().filter(solved)
+}
+
+fn list(value: &Value) -> Vec<f64> {
+    let items = value.as_array().expect("a list");
+    items.iter().map(number).collect()
+}
+
+fn near(a: f64, b: f64, size: f64, what: &str) {
+    assert!((a - b).abs() <= size, "{what}: {a} and {b}");
+}
+
+/// The friction on the first body of all interfaces, or of a load step.
+fn friction_of(report: &Value, steps: usize, step: usize) -> Vec<Value> {
+    let contact = &report["contact"];
+    if steps > 1 {
+        return vec![contact["load_steps"][step].clone()];
+    }
+    let all = contact["interfaces"].as_array().expect("a list");
+    all.iter()
+        .filter(|i| i["friction"].is_array())
+        .cloned()
+        .collect()
+}
+
+/// Forces to 1e-5, displacements to 1e-4, states within one node, on any ranks.
+#[test]
+fn cases_have_the_values_of_the_oracle() {
+    let scratch = Scratch::new("friction");
+    let mut seen = 0;
+    for (name, case) in cases() {
+        let text = case["scene"].as_str().expect("a text");
+        let scene = scratch.file("scene.toml", text);
+        let steps = case["steps"].as_array().expect("a list");
+        for ranks in [1, 2, 4] {
+            let out = run_fetifeti(ranks, &["solve", &scene, "--json", "-"]);
+            assert_eq!(out.code, 0, "{name}, {ranks} ranks: {}", out.all());
+            let report: Value = serde_json::from_str(&out.stdout).expect("JSON");
+            for (k, step) in steps.iter().enumerate() {
+                let what = format!("{name}, step {k}, {ranks} ranks");
+                let found = friction_of(&report, steps.len(), k);
+                assert!(!found.is_empty(), "{what}");
+                let normal = number(&step["normal"]);
+                let tangential = list(&step["tangential"]);
+                let sum = |c: usize| found.iter().map(|f| list(&f["friction"])[c]).sum::<f64>();
+                // The oracle leaves out the component along y, and gives the friction on the upper body.
+                near(sum(0).abs(), tangential[0].abs(), 1e-5 * normal, &what);
+                let count = |key: &str| -> f64 { found.iter().map(|f| number(&f[key])).sum() };
+                near(count("sticking"), number(&step["stick"]), 1.0, &what);
+                near(count("slipping"), number(&step["slip"]), 1.0, &what);
+                assert!(
+                    found.iter().all(|f| number(&f["dissipated"]) >= -1e-9),
+                    "{what}"
+                );
+                seen += 1;
+            }
+            let last = steps.last().expect("there is a step");
+            for probe in report["probes"].as_array().expect("a list") {
+                let name = probe["name"].as_str().expect("a name");
+                let wanted = list(&last["probes"][name]);
+                let size = wanted.iter().fold(0.1f64, |a, v| a.max(v.abs()));
+                for (u, v) in list(&probe["u"]).iter().zip(wanted) {
+                    near(*u, v, 1e-4 * size, name);
+                }
+            }
+        }
+    }
+    assert!(seen >= 3 * 8, "{seen}");
+}
+
+/// A block on a plane that a force pulls along: tan α is the pull over the weight.
+fn incline(pull: f64, friction: &str) -> String {
+    format!(
+        "physics = \"elasticity\"\n[[body]]\nname = \"block\"\nsize = [2, 1]\nelements = [8, 4]\nsubdomains = [2, 2]\n\
+         young = 1\npoisson = 0.3\nload = [{pull}, -0.1]\n[[obstacle]]\nbody = \"block\"\nside = \"bottom\"\n\
+         plane = {{ point = [0, 0], normal = [0, 1] }}\n{friction}\n"
+    )
+}
+
+fn solved(text: impl Into<String>) -> Result<fetifeti::Solution> {
+    let text = text.into();
+    with_session(move |session| {
+        let scene = Scene::parse("friction.toml", &text)?;
+        let mut stepper = Stepper::new(session, scene)?;
+        Ok(stepper.next().expect("a step")?.solution)
+    })
+}
+
+/// It stands if and only if tan α ≤ μ; where it does not, the error names it and its motion.
+#[test]
+fn a_block_on_an_incline_stands_up_to_its_friction() {
+    for (pull, stands) in [
+        (0.0, true),
+        (0.02, true),
+        (0.0299, true),
+        (0.0301, false),
+        (0.05, false),
+    ] {
+        let found = solved(incline(pull, "friction = 0.3"));
+        if stands {
+            let solution = found.expect("it stands");
+            assert!(solution.converged(), "{pull}: {}", solution.status);
+            let rows = solution.tangential_rows();
+            let drag: f64 = rows.iter().map(|r| r.multiplier * r.normal()[0]).sum();
+            near(drag, 2.0 * pull, 1e-6, "friction");
+        } else {
+            let error = found.map(|s| s.status).expect_err("it slides");
+            assert_eq!(error.kind(), ErrorKind::Input);
+            let text = error.to_string();
+            assert!(
+                text.contains("\"block\"") && text.contains("slides along x"),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// A bound that does not depend on the pressure, and a limit of Coulomb's: forces are at most s times the area.
+#[test]
+fn bounds_of_the_shear_stress_are_kept() {
+    let slipping = |friction: &str| {
+        let solution = solved(incline(0.02, friction)).expect("a solution");
+        assert!(solution.converged(), "{}", solution.status);
+        let rows = solution.tangential_rows();
+        let drag: f64 = rows.iter().map(|r| r.multiplier * r.normal()[0]).sum();
+        near(drag, 0.04, 1e-7, friction);
+        let state = |s: RowState| rows.iter().filter(|r| r.state == s).count();
+        for row in rows {
+            let stress = (row.multiplier / row.label.area).abs();
+            assert!(stress <= 0.0225 * (1.0 + 1e-5), "{stress}");
+        }
+        assert_eq!(state(RowState::Open), 0);
+        (state(RowState::Sticks), state(RowState::Slips))
+    };
+    let (stick, slip) = slipping("tresca = 0.0225");
+    assert!(stick > 0 && slip > 0);
+    let (_, slip) = slipping("friction = 5\nfriction_limit = 0.0225");
+    assert!(slip > 0);
+}
+
+/// Without friction, as with a coefficient of 0, nothing holds the block; with a large one it is tied.
+#[test]
+fn the_ends_of_friction_are_free_and_tied() {
+    let text = solved(incline(0.02, "friction = 0"))
+        .map(|s| s.status)
+        .expect_err("it slides")
+        .to_string();
+    assert!(text.contains("\"block\""), "{text}");
+    let tied = solved(incline(0.02, "friction = 1e3")).expect("a solution");
+    assert!(tied
+        .tangential_rows()
+        .iter()
+        .all(|r| r.state == RowState::Sticks));
+    assert!(tied.tangential_rows().iter().all(|r| r.gap.abs() < 1e-6));
+}

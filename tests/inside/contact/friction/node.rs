@@ -1,0 +1,97 @@
+//! Unit tests of `src/contact/friction/node.rs`.
+
+use super::*;
+
+/// A node with the normal row 0 and the tangential row 1, μ = 0.5 and k = 2.
+fn node(state: NodeState, g: f64) -> Node {
+    Node {
+        normal: 0,
+        tangential: vec![1],
+        bound: FrictionBound::Coulomb {
+            coefficient: 0.5,
+            limit: 3.0,
+        },
+        stiffness: 2.0,
+        state,
+        g,
+    }
+}
+
+/// The state and g that follow from λ_n, λ_t and w; whether the normal row is to hold.
+fn after(
+    mut node: Node,
+    [normal, force, slip]: [f64; 3],
+    touches: bool,
+) -> (NodeState, f64, Change) {
+    let change = node.update(&Step {
+        lambda: &[normal, force],
+        gaps: &[0.0, slip],
+        active: &[touches, true],
+    });
+    (node.state, node.g, change)
+}
+
+const RIGHT: NodeState = NodeState::Slip([1.0, 0.0]);
+const LEFT: NodeState = NodeState::Slip([-1.0, 0.0]);
+
+#[test]
+fn a_node_sticks_up_to_its_bound() {
+    let stuck = || node(NodeState::Stick, 0.0);
+    for (force, state) in [(0.9, NodeState::Stick), (1.1, RIGHT), (-1.1, LEFT)] {
+        let (found, g, change) = after(stuck(), [2.0, force, 0.0], true);
+        assert_eq!((found, g), (state, 1.0));
+        assert_eq!(change.flips, state != NodeState::Stick);
+    }
+    // The limit is below μ λ_n.
+    assert_eq!(after(stuck(), [10.0, 3.5, 0.0], true).1, 3.0);
+    // Nor does a normal row that pulls make friction.
+    assert_eq!(after(stuck(), [-1.0, 0.0, 0.0], true).1, 0.0);
+}
+
+#[test]
+fn a_node_slips_on_and_sticks_before_it_turns() {
+    let slips = || node(RIGHT, 1.0);
+    // It slips on, and its force follows λ_n.
+    let (state, g, change) = after(slips(), [4.0, 1.0, 0.7], true);
+    assert_eq!((state, g, change.flips), (RIGHT, 2.0, false));
+    assert!((change.moves - 1.0).abs() < 1e-15);
+    // It has come back a little: |λ_t + k w| ≤ g.
+    assert_eq!(after(slips(), [2.0, 1.0, -0.1], true).0, NodeState::Stick);
+    // It has come back far.
+    assert_eq!(after(slips(), [2.0, 1.0, -9.0], true).0, NodeState::Stick);
+}
+
+#[test]
+fn a_node_that_opens_has_no_friction_but_a_given_one() {
+    assert_eq!(
+        after(node(RIGHT, 1.0), [0.0, 1.0, 0.3], false).0,
+        NodeState::Apart
+    );
+    assert_eq!(
+        after(node(NodeState::Apart, 0.0), [0.0, 0.0, 0.3], true).0,
+        NodeState::Stick
+    );
+    let given = Node {
+        bound: FrictionBound::Tresca(0.25),
+        ..node(RIGHT, 0.25)
+    };
+    assert_eq!(given.force(), [0.25, 0.0]);
+    assert_eq!(after(given, [0.0, 0.25, 0.3], false).0, RIGHT);
+}
+
+#[test]
+fn the_error_is_a_force() {
+    let of = |state, [normal, force, slip]: [f64; 3]| {
+        node(state, 1.0).error(&Step {
+            lambda: &[normal, force],
+            gaps: &[0.0, slip],
+            active: &[true, true],
+        })
+    };
+    assert_eq!(of(NodeState::Stick, [2.0, 0.5, 0.0]), 0.0);
+    assert_eq!(of(NodeState::Stick, [2.0, -1.5, 0.0]), 0.5);
+    assert_eq!(of(RIGHT, [2.0, 1.0, 0.3]), 0.0);
+    assert_eq!(of(RIGHT, [2.0, 0.75, 0.3]), 0.25);
+    // It slips against its force.
+    assert_eq!(of(RIGHT, [2.0, 1.0, -0.3]), 0.6);
+}

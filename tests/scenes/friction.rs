@@ -1,0 +1,152 @@
+//! Friction in scenes: its keys, the rows that they make, and sentences on bad input.
+
+use fetifeti::problem::{FrictionBound, Law};
+use scene::Scene;
+
+/// A block on a plane, with further lines of the obstacle.
+fn block(friction: &str) -> String {
+    format!(
+        "physics = \"elasticity\"\n[[body]]\nname = \"block\"\nsize = 2\nelements = 4\nyoung = 1\npoisson = 0\n\
+         load = [0, -1]\n[[obstacle]]\nbody = \"block\"\nside = \"bottom\"\n\
+         plane = {{ point = [0, 0], normal = [0, 1] }}\n{friction}\n"
+    )
+}
+
+#[track_caller]
+fn refused(text: &str, expected: &str) {
+    match Scene::parse("s.toml", text) {
+        Ok(_) => panic!("accepted:\n{text}"),
+        Err(e) => {
+            assert!(e.is_input(), "{e}");
+            assert_eq!(e.to_string(), expected);
+        }
+    }
+}
+
+#[test]
+fn bad_friction_is_named() {
+    refused(
+        &block("friction = -0.1"),
+        "s.toml:13: -0.1 where a number that is not negative was expected",
+    );
+    refused(
+        &block("friction_limit = 1"),
+        "s.toml:13: `friction_limit` without `friction`, which it limits",
+    );
+    refused(
+        &block("friction = 0.1\ntresca = 1"),
+        "s.toml:14: `tresca` beside `friction` where one was expected (a bound that does not depend on the pressure, \
+         or one that does)",
+    );
+    refused(
+        &block("friction = \"x - 1\""),
+        "s.toml:9: `friction` is -1 at (0, 0) of body `block`, expected a number that is not negative",
+    );
+    let scalar = "[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n[[obstacle]]\nbody = \"a\"\nside = \"bottom\"\n\
+                  below = 0\nfriction = 1\n";
+    refused(
+        scalar,
+        "s.toml:9: friction in a scene with one unknown at a node, where physics = \"elasticity\" was expected",
+    );
+    let tied = "physics = \"elasticity\"\n[[body]]\nname = \"a\"\nsize = 1\nelements = 2\nyoung = 1\npoisson = 0\n\
+                [[body]]\nname = \"b\"\norigin = [1, 0]\nsize = 1\nelements = 2\nyoung = 1\npoisson = 0\n[[tie]]\n\
+                bodies = \"all\"\nfriction = 1\n";
+    let text = Scene::parse("s.toml", tied)
+        .map(|_| ())
+        .expect_err("no")
+        .to_string();
+    assert!(
+        text.contains("s.toml:17: unknown key `friction` in [[tie]]"),
+        "{text}"
+    );
+}
+
+#[test]
+fn scenes_that_are_not_solved_yet_are_refused() {
+    let at = "s.toml:9: friction of the obstacle of s.toml, line 9";
+    let update = block("friction = 0.1\n[steps]\ncount = 2\nupdate = true");
+    let text = Scene::parse("s.toml", &update)
+        .map(|_| ())
+        .expect_err("no")
+        .to_string();
+    assert!(
+        text.ends_with("with `update` in [steps], expected contacts that stay as they are"),
+        "{text} {at}"
+    );
+    let solid = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"a\"\nsize = 1\nelements = 2\nyoung = 1\n\
+                 poisson = 0\n[[obstacle]]\nbody = \"a\"\nside = \"bottom\"\n\
+                 plane = { point = [0, 0, 0], normal = [0, 1, 0] }\nfriction = 1\n";
+    let text = Scene::parse("s.toml", solid)
+        .map(|_| ())
+        .expect_err("no")
+        .to_string();
+    assert!(
+        text.ends_with("in space, expected a scene in the plane"),
+        "{text}"
+    );
+}
+
+/// Tangential rows come after all others, in the blocks of their normal rows, and the bounds are forces.
+#[test]
+fn nodes_with_friction_have_tangential_rows() {
+    let scene = Scene::parse(
+        "s.toml",
+        &block("friction = \"0.25*x\"\nfriction_limit = 8"),
+    )
+    .expect("a scene");
+    let rows = scene.solver_rows(&|_| true);
+    let nodes = scene.friction_nodes(&|_| true);
+    assert_eq!((rows.len(), nodes.len(), scene.rows.len()), (10, 5, 5));
+    for (k, node) in nodes.iter().enumerate() {
+        assert_eq!((node.normal, &node.tangential[..]), (k, &[5 + k][..]));
+        let (normal, tangential) = (&rows[k], &rows[5 + k]);
+        assert_eq!(
+            (normal.law, tangential.law),
+            (Law::Unilateral, Law::Friction)
+        );
+        assert_eq!(normal.block, tangential.block);
+        assert!(tangential.holds);
+        // n points down, into the obstacle, t along x.
+        assert_eq!(tangential.label.normal, [1.0, 0.0, 0.0]);
+        let x = normal.label.point[0];
+        let area = if x == 0.0 || x == 2.0 { 0.25 } else { 0.5 };
+        let expected = FrictionBound::Coulomb {
+            coefficient: 0.25 * x,
+            limit: 8.0 * area,
+        };
+        let (FrictionBound::Coulomb { coefficient, limit }, FrictionBound::Coulomb { .. }) =
+            (node.bound, expected)
+        else {
+            panic!("{node:?}");
+        };
+        assert!((coefficient - 0.25 * x).abs() < 1e-15 && (limit - 8.0 * area).abs() < 1e-12);
+    }
+}
+
+/// Given values on both sides leave nothing to slide, and a scene without friction has no tangential row.
+#[test]
+fn rows_are_made_where_something_may_slide() {
+    assert_eq!(
+        Scene::parse("s.toml", &block(""))
+            .expect("a scene")
+            .solver_rows(&|_| true)
+            .len(),
+        5
+    );
+    let held = block("friction = 1").replace("load", "dirichlet = { left = { x = 0 } }\nload");
+    let scene = Scene::parse("s.toml", &held).expect("a scene");
+    assert_eq!(scene.friction_nodes(&|_| true).len(), 4);
+}
+
+/// A plane that moves drags the nodes: c is its way along t since the load step before.
+#[test]
+fn a_moving_obstacle_drags() {
+    let text = block("move = [0.5, -0.1]\nfriction = 1\n[steps]\ntimes = [0.5, 1]\ngap = \"t^2\"");
+    let scene = Scene::parse("s.toml", &text).expect("a scene");
+    for (step, way) in [(0, 0.25), (1, 0.75)] {
+        let gaps = scene.gaps(&|_| true, step).expect("a step");
+        for c in &gaps[5..] {
+            assert!((c - 0.5 * way).abs() < 1e-15, "{step} {c}");
+        }
+    }
+}
