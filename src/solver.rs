@@ -192,7 +192,10 @@ impl FetiFeti {
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
         let multipliers = jump.in_given_order(&found.lambda);
-        let gaps = jump.in_given_order(&found.gaps);
+        let mut gaps = found.gaps.clone();
+        let rows = gaps.iter_mut().zip(&found.lambda).zip(&jump.compliance);
+        rows.for_each(|((gap, l), c)| *gap += c * l);
+        let gaps = jump.in_given_order(&gaps);
         let holds = jump.in_given_order(&found.active);
         let values = multipliers.into_iter().zip(gaps).zip(holds);
         let rows = self.problem().rows.iter().zip(values);

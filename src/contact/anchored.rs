@@ -77,7 +77,7 @@ impl SemismoothNewton<'_> {
             let dual = method.dual();
             let residual = &mut self.at.residual;
             residual.shift(&dual, &found.place);
-            let gap = judge::all_gaps(&dual, residual)?;
+            let gap = judge::all_gaps(&dual, residual, &self.at.lambda)?;
             self.length = residual.length(&dual);
             let end = LineSearchPoint {
                 gap,

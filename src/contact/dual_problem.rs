@@ -38,10 +38,10 @@ pub(crate) fn solve(
 ) -> Result<(LinearSolution, Vec<Step>)> {
     method.with_rows_kept(|| {
         Existence::new(method, &method.dual(), settings).of_gaps()?;
-        let friction = friction::has_friction(method);
+        let friction = friction::is_asked_for(method);
         if friction && settings.kind != ContactType::ActiveSet {
             return Err(Error::input(format!(
-                "-fetifeti_contact_type is {} in a problem with friction, expected {}",
+                "-fetifeti_contact_type is {} in a problem with friction or soft contact, expected {}",
                 settings.kind.name(),
                 ContactType::ActiveSet.name()
             )));
@@ -63,7 +63,7 @@ struct DualProblem<'m> {
     settings: &'m ContactSettings,
     /// Steps of the loop that is continued.
     before: usize,
-    /// Whether there is friction.
+    /// Whether there is friction, or soft contact.
     friction: bool,
 }
 

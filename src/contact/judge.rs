@@ -10,6 +10,7 @@ use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use crate::Result;
 use parallel::exchange::{max_all, total};
+use petsc::Vec as PetscVec;
 
 /// Sizes beside which forces and displacements of a problem count as small. The largest ones of a solution are not
 /// used: they may be rounding themselves, where bodies touch without force or contact holds all that could move.
@@ -39,13 +40,16 @@ impl JudgeSizes {
     }
 }
 
-/// B y − c on the owned rows, including those that do not hold. Collective.
-pub fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
+/// B y − C λ − c on the owned rows, including those that do not hold. Collective.
+pub fn all_gaps(dual: &Dual, residual: &Residual, lambda: &PetscVec) -> Result<Vec<f64>> {
     let gaps = dual.multipliers()?;
     dual.stiffness.jump_of_all(&residual.work, &gaps)?;
     let mut gaps = gaps.to_vec()?;
     let c = &dual.stiffness.jump.gap;
     gaps.iter_mut().zip(c).for_each(|(gap, c)| *gap -= c);
+    dual.stiffness
+        .jump
+        .less_compression(&lambda.array()?, &mut gaps);
     Ok(gaps)
 }
 

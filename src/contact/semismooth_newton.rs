@@ -378,7 +378,7 @@ impl<'a> SemismoothNewton<'a> {
         let residual = &mut self.at.residual;
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
         residual.add_rigid_motion(&dual)?;
-        let gap = self.repairs.place(&dual, residual)?;
+        let gap = self.repairs.place(&dual, residual, &self.at.lambda)?;
         self.length = residual.length(&dual);
         Ok(LineSearchPoint {
             gap,

@@ -143,6 +143,7 @@ impl LocatedRow {
             law: self.law,
             holds: true,
             block: self.block.into(),
+            compliance: 0.0,
             rounding: 0.0,
             label: RowLabel::new(source, [first, second]),
         }

@@ -28,6 +28,7 @@ pub fn rows(
         law: Law::Tie,
         holds: true,
         block: u64::from(contact.block(dof).unwrap_or(dof)),
+        compliance: 0.0,
         rounding: 0.0,
         label: RowLabel::new(
             RowSource::Interface(dof as usize),

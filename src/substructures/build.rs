@@ -154,6 +154,7 @@ impl Row {
             law: Law::Tie,
             holds: true,
             block: 0,
+            compliance: 0.0,
             rounding: 0.0,
             label: RowLabel::new(RowSource::Equation(0), [None; 2]),
         }
@@ -185,6 +186,12 @@ impl Row {
     /// This row, which holds initially or does not.
     pub fn held(mut self, holds: bool) -> Row {
         self.holds = holds;
+        self
+    }
+
+    /// This row with a compliance, a length per force.
+    pub fn with_compliance(mut self, compliance: f64) -> Row {
+        self.compliance = compliance;
         self
     }
 

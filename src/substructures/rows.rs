@@ -27,6 +27,9 @@ pub struct Row {
     /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same
     /// rank: the scaling B D⁻¹ Bᵀ is inverted block by block.
     pub block: u64,
+    /// C ≥ 0, by how much a unit force compresses what the row stands for: (B u)_r − C λ_r takes the place of (B u)_r.
+    /// 0 where it is rigid.
+    pub compliance: f64,
     /// How far the direction of the row may be off, in radians, where it follows from coordinates with so many digits;
     /// 0 where it is exact. Work of the row on a rigid motion that is smaller, relative to the largest that it could
     /// be, is taken for rounding of the input if no other row resists the motion.

@@ -33,7 +33,7 @@ fn contacts() {
         &with("gapp = 1"),
         "s.toml:13: unknown key `gapp` in [[contact]] (known keys are surfaces, bodies, \
          sides, multipliers, adjust, distance, where, range, points, nodes, gap, friction, \
-         friction_limit, tresca, ramp)",
+         friction_limit, tresca, stiffness, stick_stiffness, ramp)",
     );
     check(
         &pair("[[contact]]\ngap = 1\n"),
@@ -222,7 +222,7 @@ fn obstacles() {
     check(
         &with("body = \"a\"\nside = \"top\"\nover = 1"),
         "s.toml:14: unknown key `over` in [[obstacle]] (known keys are body, side, where, range, points, nodes, below, \
-         above, friction, friction_limit, tresca, ramp)",
+         above, friction, friction_limit, tresca, stiffness, stick_stiffness, ramp)",
     );
     check(
         &with("body = \"a\"\nside = \"top\"\nbelow = 0\nrange = [0.3, 0.4]"),
@@ -343,7 +343,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         multipliers: None,
         adjust: 0.0,
         adjusted: Vec::new(),
-        friction: None,
+        law: Default::default(),
         ramp: None,
         location: base::Location::default(),
     });
@@ -364,7 +364,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         extent: Extent::All,
         below: None,
         above: None,
-        friction: None,
+        law: Default::default(),
         ramp: None,
         location: base::Location::default(),
     });

@@ -42,6 +42,18 @@ fn bad_friction_is_named() {
         &block("friction = \"x - 1\""),
         "s.toml:9: `friction` is -1 at (0, 0) of body `block`, expected a number that is not negative",
     );
+    refused(
+        &block("stiffness = 0"),
+        "s.toml:13: 0 where a positive number was expected",
+    );
+    refused(
+        &block("stick_stiffness = 1"),
+        "s.toml:13: `stick_stiffness` without `friction` or `tresca`",
+    );
+    refused(
+        &block("stiffness = \"2*x\""),
+        "s.toml:9: `stiffness` is 0 at (0, 0) of body `block`, expected a positive number",
+    );
     let scalar = "[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n[[obstacle]]\nbody = \"a\"\nside = \"bottom\"\n\
                   below = 0\nfriction = 1\n";
     refused(

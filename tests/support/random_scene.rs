@@ -150,7 +150,7 @@ pub fn spec(seed: u64) -> SceneSpec {
             multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
-            friction: None,
+            law: Default::default(),
             ramp: None,
             location: base::Location::default(),
         });
@@ -315,7 +315,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
-            friction: None,
+            law: Default::default(),
             ramp: None,
             location: base::Location::default(),
         });
@@ -376,7 +376,7 @@ fn obstacles(rng: &mut Rng, spec: &mut SceneSpec, tame: bool) {
             distance: None,
             adjust: 0.0,
             gap: Profile::constant(0.0),
-            friction: None,
+            law: Default::default(),
             ramp: None,
             location: base::Location::default(),
         });

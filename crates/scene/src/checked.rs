@@ -15,7 +15,7 @@ use super::model::steps::Steps;
 use super::part::RankPart;
 use super::renewal::{may_renew, Renewal};
 use super::rows::all::{Joined, SceneRows};
-use super::rows::friction::NodeFriction;
+use super::rows::laws::NodeLaw;
 use super::rows::obstacles::{Obstacle, Standing};
 use super::rows::points::InterfacePoint;
 use super::rows::row::Row;
@@ -72,8 +72,8 @@ pub struct Scene {
     /// displacements; then rows between sides whose nodes do not match. [`Scene::solver_rows`] makes rows of B
     /// of them.
     pub rows: Vec<Row>,
-    /// Nodes with friction, in the order of their normal rows.
-    pub friction: Vec<NodeFriction>,
+    /// The laws of nodes that have friction or are soft, in the order of their normal rows.
+    pub laws: Vec<NodeLaw>,
     /// Points of interest.
     pub probes: Vec<ProbeSpec>,
     /// Rigid obstacles, by body, side and bound.
@@ -222,7 +222,7 @@ impl Scene {
             RowSource::Obstacle(k) => obstacles[k].motion,
             RowSource::Interface(_) | RowSource::Equation(_) => [0.0; 3],
         };
-        let friction = rows::friction::collect(&bodies, &spec, &rows, &t, &motion)?;
+        let laws = rows::laws::collect(&bodies, &spec, &rows, &t, &motion)?;
         obstacles.iter_mut().for_each(Obstacle::finish);
         let renewal = written
             .map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &obstacles, &rows));
@@ -252,7 +252,7 @@ impl Scene {
             interfaces,
             points,
             rows,
-            friction,
+            laws,
             probes: spec.probes,
             obstacles,
             steps,

@@ -20,6 +20,7 @@ impl Scene {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Problem> {
+        self.check_areas(owns)?;
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
         let matrices = MatrixCache::default();
         // Assembles all subdomains, then reports the first error in their order: the first error in time would be

@@ -26,7 +26,9 @@ impl ActiveSet<'_> {
         let jump = &dual.stiffness.jump;
         self.at.residual.add_rigid_motion(dual)?;
         self.placed = true;
-        self.gaps = self.repairs.place(dual, &mut self.at.residual)?;
+        self.gaps = self
+            .repairs
+            .place(dual, &mut self.at.residual, &self.at.lambda)?;
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
         let (sizes, tuning) = (

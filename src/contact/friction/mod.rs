@@ -24,9 +24,11 @@ use crate::Result;
 use node::{Node, NodeState};
 use parallel::exchange::{any, max_all, sum_all};
 
-/// Whether a problem has friction. Collective.
-pub fn has_friction(method: &LinearMethod) -> bool {
-    any(method.session.comm(), !method.problem.friction.is_empty())
+/// Whether a problem has friction, or rows that give way. Collective.
+pub fn is_asked_for(method: &LinearMethod) -> bool {
+    let soft = !method.dual().stiffness.jump.compliance.is_empty();
+    let some = soft || !method.problem.friction.is_empty();
+    any(method.session.comm(), some)
 }
 
 /// Given multipliers of rows, for as long as friction needs them: a guard that takes them away again.

@@ -18,6 +18,7 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::LinearMethod;
 use crate::Result;
+use petsc::Vec as PetscVec;
 
 /// The repairs of a problem.
 pub(super) struct Repairs<'a> {
@@ -65,17 +66,17 @@ impl<'a> Repairs<'a> {
         held::restore_coercivity(problem, dual, active, (score, may), load, self.tuning)
     }
 
-    /// Moves bodies that nothing holds to where no row is violated, or as little as possible. Returns the gaps B u − c
-    /// of the owned rows. Collective.
+    /// Moves bodies that nothing holds to where no row is violated, or as little as possible. Returns the gaps
+    /// B u − C λ − c of the owned rows. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn place(&self, dual: &Dual, at: &mut Residual) -> Result<Vec<f64>> {
-        let gaps = judge::all_gaps(dual, at)?;
+    pub fn place(&self, dual: &Dual, at: &mut Residual, lambda: &PetscVec) -> Result<Vec<f64>> {
+        let gaps = judge::all_gaps(dual, at, lambda)?;
         match placed::least_distance(dual, &gaps, self.tuning) {
             Some(alpha) => {
                 at.shift(dual, &alpha);
-                judge::all_gaps(dual, at)
+                judge::all_gaps(dual, at, lambda)
             }
             None => Ok(gaps),
         }

@@ -20,7 +20,7 @@ use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::jump::blocks;
-use crate::substructures::{Law, Problem};
+use crate::substructures::{Law, Problem, Row};
 use parallel::exchange::{exchange, offsets, total};
 
 /// The dual space and its operators.
@@ -47,6 +47,8 @@ pub struct Jump {
     pub held: Vec<f64>,
     /// The law of each owned row; rows of B_loc are ties.
     pub law: Vec<Law>,
+    /// C of each owned row; empty if all are rigid.
+    pub compliance: Vec<f64>,
     /// Z⁰ on the owned rows: whether the row holds to begin with.
     pub initial: Vec<bool>,
     /// Z^k on the owned rows: whether the row holds.
@@ -159,6 +161,7 @@ impl Jump {
             n_local: total(comm, n_owned_local as f64) as usize,
             gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
             law: ties.chain(rows.iter().map(|r| r.law)).collect(),
+            compliance: compliance(n_owned_local, &rows),
             initial: active.clone(),
             averages: sharing.averages.clone(),
             active,
@@ -206,6 +209,14 @@ impl Jump {
             out[r] = value.clone();
         }
         out
+    }
+
+    /// Turns B u − c on the owned rows into B u − C λ − c.
+    pub fn less_compression(&self, lambda: &[f64], gaps: &mut [f64]) {
+        let rows = self.compliance.iter().zip(lambda);
+        gaps.iter_mut()
+            .zip(rows)
+            .for_each(|(g, (c, l))| *g -= c * l);
     }
 
     /// Whether owned row `i` may hold at all. Open rows of faces that are partly tied may not.
@@ -294,6 +305,15 @@ impl Jump {
             position[found.expect("a row's dof is an interface dof")].1
         });
     }
+}
+
+/// C of `inside` rows of B_loc and of these rows; empty if all are rigid.
+fn compliance(inside: usize, rows: &[&Row]) -> Vec<f64> {
+    if rows.iter().all(|r| r.compliance == 0.0) {
+        return Vec::new();
+    }
+    let zeros = std::iter::repeat_n(0.0, inside);
+    zeros.chain(rows.iter().map(|r| r.compliance)).collect()
 }
 
 /// The dual dofs shared inside a body whose lowest subdomain lives on this rank, in a reproducible order, and the start

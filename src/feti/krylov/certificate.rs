@@ -59,10 +59,10 @@ impl Kkt {
 pub struct Certificate {
     /// Optimality.
     pub kkt: Kkt,
-    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c), the value of the Lagrangian. At the solution it equals the energy and is
-    /// stationary; its error is therefore of second order.
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c) − ½ λᵀ C λ, the value of the Lagrangian. At the solution it equals the energy and
+    /// is stationary; its error is therefore of second order.
     pub energy: f64,
-    /// B u − c on the owned rows, including those that do not hold.
+    /// B u − C λ − c on the owned rows, including those that do not hold.
     pub gaps: Vec<f64>,
     /// The residuals that the estimate of the error begins with.
     pub left: Leftover,
@@ -114,10 +114,13 @@ impl Certificate {
         let mut gaps = rows.to_vec()?;
         gaps.iter_mut().zip(&jump.gap).for_each(|(b, c)| *b -= c);
         let lambda = lambda.array()?;
+        jump.less_compression(&lambda, &mut gaps);
         // The work of friction on a slip is no energy.
         let slips = |r: &usize| jump.law[*r].is_friction() && !jump.active[*r];
         let rows = (0..jump.n_owned).filter(|r| !slips(r));
         sums[3] += rows.map(|r| gaps[r] * lambda[r]).sum::<f64>();
+        let compressed = jump.compliance.iter().zip(&*lambda);
+        sums[3] += compressed.map(|(c, l)| 0.5 * c * l * l).sum::<f64>();
         sum_all(comm, &mut sums);
         let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
         let forces = sums[1].sqrt() + sums[2].sqrt();

@@ -208,7 +208,7 @@ fn distance(kkt: &Kkt) -> f64 {
     kkt.stationarity.max(kkt.feasibility)
 }
 
-/// r of every local subdomain, and the remaining jumps c − B u of the rows. Collective.
+/// r of every local subdomain, and the remaining jumps c − B u + C λ of the rows. Collective.
 pub(super) fn remainder(
     problem: &Problem,
     dual: &Dual,
@@ -235,6 +235,7 @@ pub(super) fn remainder(
     }
     let rows = dual.multipliers()?;
     stiffness.jump_of(&work, &rows)?;
+    stiffness.add_compliance(-1.0, lambda, &rows)?;
     let jumps = rows.array()?;
     let jumps = stiffness.jump.held.iter().zip(&*jumps).map(|(c, b)| c - b);
     let jumps = jumps.collect();

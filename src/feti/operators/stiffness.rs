@@ -78,7 +78,7 @@ impl Stiffness {
             ghost: vec![0.0; jump.ghosts.len()],
         };
         let products = BatchedProducts::new(&locals, |most| batches(&locals, most));
-        Ok(Stiffness {
+        let mut out = Stiffness {
             session: session.clone(),
             products,
             coupling: Coupling::new(session, &jump)?,
@@ -91,7 +91,10 @@ impl Stiffness {
             refinement: None,
             springs: None,
             buffers: RefCell::new(buffers),
-        })
+        };
+        out.set_compliance(None);
+        out.renew_springs();
+        Ok(out)
     }
 
     /// The ranks.
@@ -109,8 +112,10 @@ impl Stiffness {
         self.springs.is_some()
     }
 
-    /// Replaces C; `None` makes all rows rigid.
+    /// Replaces C; `None` gives the rows the compliance that they have of themselves.
     pub(super) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
+        let own = || Some(self.jump.compliance.clone()).filter(|c| !c.is_empty());
+        let compliance = compliance.or_else(own);
         self.springs = compliance.map(|c| Springs::new(&self.jump, c));
     }
 

@@ -18,6 +18,7 @@ fn rows_travel_unchanged() {
         law: Law::Unilateral,
         holds: true,
         block: 9,
+        compliance: 0.0,
         rounding: 0.0,
         label,
     };

@@ -105,10 +105,10 @@ impl BaselinePlan {
                 scene.title
             )));
         }
-        if scene.has_friction() {
+        if scene.has_laws() {
             return Err(Error::input(format!(
-                "the scene \"{}\" has friction, which the other methods do not have here (a scene without friction \
-                 was expected)",
+                "the scene \"{}\" has friction or soft contact, which the other methods do not have here (hard contact \
+                 without friction was expected)",
                 scene.title
             )));
         }

@@ -113,7 +113,7 @@ pub(super) fn contacts(
                 adjust
             },
             adjusted,
-            friction: None,
+            law: Default::default(),
             ramp: None,
             location: at(deck, pair.place),
         });

@@ -1,6 +1,6 @@
 //! Joints between bodies and restraints from outside, as plain data: ties, contacts, obstacles, equations.
 
-use super::friction::FrictionSpec;
+use super::friction::ContactLaw;
 use super::profile::Profile;
 use super::ramp::Ramp;
 use super::rigid::Rigid;
@@ -82,8 +82,8 @@ pub struct ContactSpec {
     pub adjust: f64,
     /// Nodes of the first body that count as touching, whatever their gap is.
     pub adjusted: Vec<BodyNode>,
-    /// Friction; `None`: none.
-    pub friction: Option<FrictionSpec>,
+    /// Friction and softness.
+    pub law: ContactLaw,
     /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, if it was.
@@ -115,8 +115,8 @@ pub struct ObstacleSpec {
     pub distance: Option<f64>,
     /// Initial distances and overclosures up to this length count as touching.
     pub adjust: f64,
-    /// Friction on the rigid body; `None`: none.
-    pub friction: Option<FrictionSpec>,
+    /// Friction on the rigid body, and its softness.
+    pub law: ContactLaw,
     /// Factor of the bounds, of the gap and of the motion over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, if it was.

@@ -78,7 +78,7 @@ impl SceneReader {
         } else {
             RigidShape::default()
         };
-        let friction = self.friction(&mut section)?;
+        let law = self.law(&mut section)?;
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
         let rigid = shape.rigid.is_some() || shape.surface.is_some();
@@ -100,7 +100,7 @@ impl SceneReader {
             motion: shape.motion,
             distance: shape.distance,
             adjust: shape.adjust,
-            friction: friction.clone(),
+            law: law.clone(),
             ramp: ramp.clone(),
             location: item.location(),
         };

@@ -67,7 +67,7 @@ impl SceneReader {
         let distance = section.read("distance", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[contact]]")?;
         let gap = section.read("gap", |item| self.profile(item))?;
-        let friction = self.friction(&mut section)?;
+        let law = self.law(&mut section)?;
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
         Ok(ContactSpec {
@@ -79,7 +79,7 @@ impl SceneReader {
             multipliers,
             adjust: adjust.unwrap_or(0.0),
             adjusted: Vec::new(),
-            friction,
+            law,
             ramp,
             location: item.location(),
         })

@@ -1,7 +1,6 @@
 //! The rows of B_gl for ties, contacts and obstacles, with their labels.
 
 use super::areas::Areas;
-use super::friction::NodeFriction;
 use super::rounding::Rounding;
 use super::row::Row;
 use crate::checked::Scene;
@@ -32,11 +31,12 @@ impl Scene {
             out
         };
         let mut out: Vec<fetifeti::Row> = Vec::new();
-        let tangential = self.friction_of(owns).flat_map(|f| &f.tangential);
+        let tangential = self.friction_of(owns).flat_map(|f| &f.1.tangential);
         out.extend(self.rows_of(owns).chain(tangential).map(joined));
         if let Ok(drags) = self.drags(owns, self.n_steps() - 1) {
             out.iter_mut().zip(drags).for_each(|(row, d)| row.gap += d);
         }
+        self.soften(owns, &mut out);
         out
     }
 
@@ -59,8 +59,8 @@ impl Scene {
         let factors = self.last_two(step)?;
         let rows = self.rows_of(owns);
         let mut out: Vec<f64> = rows.map(|row| row.right_hand_side(&factors.1)).collect();
-        for friction in self.friction_of(owns) {
-            let drags = friction.drags(&factors, self.entry_of(friction));
+        for (normal, friction) in self.friction_of(owns) {
+            let drags = friction.drags(&factors, self.entry_of(normal));
             let rows = friction.tangential.iter().zip(drags);
             out.extend(rows.map(|(row, drag)| row.right_hand_side(&factors.1) + drag));
         }
@@ -75,8 +75,8 @@ impl Scene {
     pub fn drags(&self, owns: &dyn Fn(usize) -> bool, step: usize) -> Result<Vec<f64>> {
         let factors = self.last_two(step)?;
         let mut out = vec![0.0; self.rows_of(owns).count()];
-        for friction in self.friction_of(owns) {
-            out.extend(friction.drags(&factors, self.entry_of(friction)));
+        for (normal, friction) in self.friction_of(owns) {
+            out.extend(friction.drags(&factors, self.entry_of(normal)));
         }
         Ok(out)
     }
@@ -88,9 +88,9 @@ impl Scene {
         Ok((before, Factors::of(&self.steps, step)?))
     }
 
-    /// The entry of a node with friction.
-    fn entry_of(&self, friction: &NodeFriction) -> Option<EntryId> {
-        let limit = self.rows[friction.normal].limits().first();
+    /// The entry of a row in contact.
+    fn entry_of(&self, row: usize) -> Option<EntryId> {
+        let limit = self.rows[row].limits().first();
         limit.and_then(|l| l.entry)
     }
 

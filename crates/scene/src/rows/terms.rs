@@ -32,7 +32,7 @@ impl Scene {
         &'s self,
         owns: &'s dyn Fn(usize) -> bool,
     ) -> impl Iterator<Item = RowTerms> + 's {
-        let rows = self.friction_of(owns).flat_map(|f| &f.tangential);
+        let rows = self.friction_of(owns).flat_map(|f| &f.1.tangential);
         rows.map(|row| self.all_terms(row))
     }
 
