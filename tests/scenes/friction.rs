@@ -85,17 +85,6 @@ fn scenes_that_are_not_solved_yet_are_refused() {
         text.ends_with("with `update` in [steps], expected contacts that stay as they are"),
         "{text} {at}"
     );
-    let solid = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"a\"\nsize = 1\nelements = 2\nyoung = 1\n\
-                 poisson = 0\n[[obstacle]]\nbody = \"a\"\nside = \"bottom\"\n\
-                 plane = { point = [0, 0, 0], normal = [0, 1, 0] }\nfriction = 1\n";
-    let text = Scene::parse("s.toml", solid)
-        .map(|_| ())
-        .expect_err("no")
-        .to_string();
-    assert!(
-        text.ends_with("in space, expected a scene in the plane"),
-        "{text}"
-    );
 }
 
 /// Tangential rows come after all others, in the blocks of their normal rows, and the bounds are forces.

@@ -71,6 +71,8 @@ pub(super) struct ActiveSet<'a> {
     least: f64,
     /// Sizes of the problem beside which multipliers and gaps are rounding.
     sizes: JudgeSizes,
+    /// The compliance of springs in the owned rows, beside that of the rows themselves; empty without springs.
+    pub springs: Vec<f64>,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -113,6 +115,7 @@ impl<'a> ActiveSet<'a> {
             least: method.least_residual(),
             sizes,
             placed: false,
+            springs: Vec::new(),
             gaps: Vec::new(),
             held: Vec::new(),
             last: (Vec::new(), None),

@@ -30,7 +30,11 @@ impl ActiveSet<'_> {
             .repairs
             .place(dual, &mut self.at.residual, &self.at.lambda)?;
         self.held.clone_from(&jump.active);
-        let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
+        let lambda = self.at.lambda.array()?;
+        for (r, spring) in self.springs.iter().enumerate().filter(|s| *s.1 > 0.0) {
+            self.gaps[r] -= spring * lambda[r];
+        }
+        let gaps = &self.gaps;
         let (sizes, tuning) = (
             (self.at.residual.largest(), self.sizes),
             &self.settings.tuning,

@@ -13,14 +13,16 @@ pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
+use super::modes::CompliantRows;
 use super::settings::ContactSettings;
 use super::state::{State, Step};
 use super::strategy::{Proposal, Strategy};
 use crate::feti::jump::operator::Jump;
+use crate::feti::jump::turn::Turn;
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
-use crate::Result;
+use crate::{Error, Result};
 use node::{Node, NodeState};
 use parallel::exchange::{any, max_all, sum_all};
 
@@ -57,6 +59,8 @@ pub struct Friction<'a> {
     /// The loads of the problem.
     loads: Loads,
     nodes: Vec<Node>,
+    /// Springs across slips in space.
+    springs: CompliantRows<'a>,
     /// Steps in a row after which nothing but friction beyond its bound held a body.
     slides: usize,
 }
@@ -71,6 +75,16 @@ impl<'a> Friction<'a> {
         let cold = State::cold(&method.dual().stiffness.jump);
         let state = start.unwrap_or(&cold);
         let nodes = nodes(method, &state.lambda, &state.active)?;
+        let dual = method.dual();
+        let jump = &dual.stiffness.jump;
+        let turns = |node: &Node| node.tangential.len() < 2 || jump.can_turn(node.normal);
+        if any(method.session.comm(), !nodes.iter().all(turns)) {
+            return Err(Error::input(
+                "friction in space at nodes that equations or rows of other nodes lead to, expected nodes with rows of \
+                 their own",
+            ));
+        }
+        drop(dual);
         let mut inner = ActiveSet::new(method, settings, start)?;
         inner.finer = settings.tuning.friction.finer;
         let loads = Loads::new(&method.problem, &method.dual());
@@ -80,20 +94,91 @@ impl<'a> Friction<'a> {
             inner,
             loads,
             nodes,
+            springs: CompliantRows::of(method),
             slides: 0,
         })
     }
 
     /// Hands the states of the nodes to the equations.
     fn pose(&mut self) -> Result<()> {
-        let (given, active) = (&self.given(), &mut self.inner.state.active);
+        self.turn(false)?;
+        let given = self.given();
+        let mut springs = vec![0.0; given.len()];
         for node in &self.nodes {
-            let sticks = node.state == NodeState::Stick;
+            for (&t, holds) in node.tangential.iter().zip(node.holds()) {
+                self.inner.state.active[t] = holds;
+            }
+            if let [_, across] = node.tangential[..] {
+                springs[across] = node.across();
+            }
+        }
+        self.soften(springs);
+        self.method.system.set_given_multipliers(given.clone());
+        self.inner.at.loads = self.loads_with(&given)?;
+        self.inner.renewed();
+        Ok(())
+    }
+
+    /// Turns the rows of nodes that slip along their slips, or all rows `back`. The multipliers of the loop turn along.
+    /// Collective.
+    fn turn(&mut self, back: bool) -> Result<()> {
+        let turns = self.nodes.iter_mut().filter_map(|node| node.turn(back));
+        let turns: Vec<Turn> = turns.collect();
+        if !any(self.method.session.comm(), !turns.is_empty()) {
+            return Ok(());
+        }
+        self.method.system.turn(&self.method.problem, &turns);
+        let mut lambda = self.inner.at.lambda.array_mut()?;
+        for turn in &turns {
+            let [a, b] = turn.rows;
+            [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
+        }
+        Ok(())
+    }
+
+    /// Puts springs into rows, beside the compliance that they have of themselves. Collective.
+    fn soften(&mut self, springs: Vec<f64>) {
+        let some = any(self.method.session.comm(), springs.iter().any(|s| *s > 0.0));
+        let was = !self.inner.springs.is_empty();
+        if !some && !was {
+            return;
+        }
+        let own = self.method.dual().stiffness.jump.compliance.clone();
+        if some {
+            let own = own.iter().chain(std::iter::repeat(&0.0));
+            let all: Vec<f64> = springs.iter().zip(own).map(|(s, c)| s + c).collect();
+            self.springs.soften(&all);
+            self.inner.springs = springs;
+        } else {
+            self.springs.rigid();
+            self.inner.springs = Vec::new();
+        }
+    }
+
+    /// In space, turns the rows back. Nodes that slip then have given forces alone, those across their slips included.
+    /// Collective.
+    fn rest(&mut self) -> Result<()> {
+        let method = self.method;
+        let in_space = self.nodes.iter().any(|n| n.tangential.len() > 1);
+        if !any(method.session.comm(), in_space) {
+            return Ok(());
+        }
+        let mut active = method.dual().stiffness.jump.active.clone();
+        for node in &self.nodes {
+            let sticks = node.tangential.iter().all(|&t| active[t]);
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
-        self.method.system.set_given_multipliers(given.clone());
-        self.inner.at.loads = self.loads_with(given)?;
-        self.inner.renewed();
+        self.turn(true)?;
+        self.soften(vec![0.0; active.len()]);
+        let lambda = self.inner.at.lambda.to_vec()?;
+        let mut given = vec![0.0; active.len()];
+        for &t in self.nodes.iter().flat_map(|n| &n.tangential) {
+            given[t] = if active[t] { 0.0 } else { lambda[t] };
+        }
+        method.system.set_given_multipliers(given.clone());
+        method.set_active(&active)?;
+        self.inner.at.loads = self.loads_with(&given)?;
+        (self.inner.state.active, self.inner.state.lambda) = (active, lambda);
         Ok(())
     }
 
@@ -101,7 +186,8 @@ impl<'a> Friction<'a> {
     fn given(&self) -> Vec<f64> {
         let mut given = vec![0.0; self.method.dual().stiffness.jump.n_owned];
         for node in &self.nodes {
-            for (&t, f) in node.tangential.iter().zip(node.force()) {
+            let force = node.on_rows(node.force());
+            for (&t, f) in node.tangential.iter().zip(force) {
                 given[t] = f;
             }
         }
@@ -143,10 +229,12 @@ impl<'a> Friction<'a> {
     /// # Errors
     /// Bodies that slide or fly away: for some steps nothing but friction beyond its bound has held them.
     fn hold(&mut self) -> Result<bool> {
+        self.turn(false)?;
         let given = self.given();
         let load = self.loads_with(&given)?.kernel;
         let mut active = self.inner.state.active.clone();
         for node in &self.nodes {
+            // The springs across slips give way as far as a body slides.
             let sticks = node.state == NodeState::Stick;
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
@@ -168,7 +256,11 @@ impl<'a> Friction<'a> {
         let restored = any(comm, restored);
         self.slides = if restored { self.slides + 1 } else { 0 };
         if self.slides > self.settings.tuning.friction.slides {
+            // Which body it is, and its motion: that of the load beside all forces of friction that are given.
             let law = self.method.dual().stiffness.jump.law.clone();
+            for (on, law) in active.iter_mut().zip(&law) {
+                *on &= !law.is_friction();
+            }
             let normal = |r: usize| !law[r].is_friction();
             self.inner.hold(&mut active, &load, &normal)?;
         }
@@ -203,12 +295,14 @@ impl Strategy<DualCourse> for Friction<'_> {
     }
 
     fn finish(
-        self: Box<Self>,
+        mut self: Box<Self>,
         steps: &[Step],
         seconds: f64,
         status: Status,
     ) -> Result<LinearSolution> {
-        let Friction { inner, .. } = *self;
+        self.rest()?;
+        let Friction { inner, springs, .. } = *self;
+        drop(springs);
         inner.end(steps, seconds, status)
     }
 }

@@ -3,8 +3,12 @@
 //! ```text
 //!     s = λ_t + k w         stick    |s| ≤ g              slip along d = s/|s|    |s| > g
 //! ```
+//!
+//! In space the rows of a node that slips are turned: the first one is along d and has the given force, the second one
+//! is across d. It is a spring of compliance |w|/g, by which the force follows the direction of the slip.
 
 use crate::feti::jump::operator::Jump;
+use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
 
 /// The state of a node in the equations of a step.
@@ -31,6 +35,10 @@ pub struct Node {
     pub state: NodeState,
     /// g in the equations.
     pub g: f64,
+    /// The direction of the first tangential row, in the directions that were given.
+    axis: [f64; 2],
+    /// |w| along the slip of the last step.
+    slipped: f64,
 }
 
 /// A row of the solution of a step: its multiplier, its gap B u − c, and whether it is to hold.
@@ -81,10 +89,68 @@ impl Node {
             stiffness: if soft > 0.0 { 1.0 / soft } else { 0.0 },
             state,
             g: size,
+            axis: [1.0, 0.0],
+            slipped: 0.0,
         }
     }
 
-    /// The given force of friction; zero unless the node slips.
+    /// The turn that brings the first row along the slip, or back to where it was given; `None` if it is there, and in
+    /// the plane.
+    pub fn turn(&mut self, back: bool) -> Option<Turn> {
+        let [a, b] = self.tangential[..] else {
+            return None;
+        };
+        let to = match self.state {
+            _ if back => [1.0, 0.0],
+            NodeState::Slip(d) => d,
+            NodeState::Apart | NodeState::Stick => return None,
+        };
+        if to == self.axis {
+            return None;
+        }
+        let from = self.axis;
+        self.axis = to;
+        Some(Turn {
+            rows: [a, b],
+            by: [
+                from[0] * to[0] + from[1] * to[1],
+                from[0] * to[1] - from[1] * to[0],
+            ],
+        })
+    }
+
+    /// Whether each tangential row holds in the equations.
+    pub fn holds(&self) -> [bool; 2] {
+        match self.state {
+            NodeState::Stick => [true; 2],
+            NodeState::Slip(_) => [false, true],
+            NodeState::Apart => [false; 2],
+        }
+    }
+
+    /// The compliance of the row across the slip; 0 unless it slips in space.
+    pub fn across(&self) -> f64 {
+        match self.state {
+            NodeState::Slip(_) if self.g > 0.0 && self.tangential.len() == 2 => {
+                self.slipped / self.g
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Values on the rows, in the directions that were given.
+    fn given(&self, [first, second]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.axis;
+        [c * first - s * second, s * first + c * second]
+    }
+
+    /// Values in the directions that were given, on the rows.
+    pub fn on_rows(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.axis;
+        [c * x + s * y, c * y - s * x]
+    }
+
+    /// The given force of friction in the directions that were given; zero unless the node slips.
     pub fn force(&self) -> [f64; 2] {
         match self.state {
             NodeState::Slip(d) => d.map(|d| self.g * d),
@@ -92,14 +158,18 @@ impl Node {
         }
     }
 
-    /// λ_t and w after a step.
+    /// λ_t and w after a step, in the directions that were given.
     fn tangent(&self, step: &Step<'_>) -> [[f64; 2]; 2] {
         let mut out = [[0.0; 2]; 2];
         for (k, &t) in self.tangential.iter().enumerate() {
             out[0][k] = step.lambda[t];
             out[1][k] = step.gaps[t];
         }
-        out
+        if self.tangential.len() == 2 {
+            // The row across the slip is a spring: its jump is what the spring gives way.
+            out[1][1] += self.across() * out[0][1];
+        }
+        out.map(|v| self.given(v))
     }
 
     /// The state that follows from a step, and its g.
@@ -131,10 +201,15 @@ impl Node {
     /// Takes the node to the state that follows from a step.
     pub fn update(&mut self, step: &Step<'_>) -> Change {
         let before = self.force();
+        let slip = self.tangent(step)[1];
         let (state, g) = self.next(step);
         let kind = std::mem::discriminant(&self.state);
         let flips = kind != std::mem::discriminant(&state);
         (self.state, self.g) = (state, g);
+        self.slipped = match state {
+            NodeState::Slip(d) => (d[0] * slip[0] + d[1] * slip[1]).max(0.0),
+            NodeState::Apart | NodeState::Stick => 0.0,
+        };
         let now = self.force();
         Change {
             flips,
@@ -142,19 +217,17 @@ impl Node {
         }
     }
 
-    /// How far a solution is from the law of friction: a force beyond g where the node sticks, another force than g
-    /// along the slip where it slips. In the unit of a force.
+    /// How far a solution is from the law of friction, |λ_t − Π_g(λ_t + k w)| with the projection Π_g onto the disc of
+    /// radius g. It is a force.
     pub fn error(&self, step: &Step<'_>) -> f64 {
         let [force, slip] = self.tangent(step);
         let g = self.bound.at(step.lambda[self.normal]);
-        match self.state {
-            NodeState::Apart => 0.0,
-            NodeState::Stick => (length(force) - g).max(0.0),
-            NodeState::Slip(d) => {
-                let back = -self.stiffness * (d[0] * slip[0] + d[1] * slip[1]);
-                (length(force) - g).abs().max(back)
-            }
-        }
+        let s = [0, 1].map(|k| force[k] + self.stiffness * slip[k]);
+        let factor = match length(s) {
+            size if size > g => g / size,
+            _ => 1.0,
+        };
+        length([force[0] - factor * s[0], force[1] - factor * s[1]])
     }
 }
 

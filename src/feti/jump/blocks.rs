@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::coupled::Coupled;
 use super::dependent;
 use super::scaling::ScalingCache;
+use super::turn::Turn;
 use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::substructures::Problem;
 use base::linalg::dense::Dense;
@@ -167,6 +168,27 @@ impl Block {
                     .map(|rows| (rows.clone(), part(&rows)))
                     .collect()
             }
+        }
+    }
+
+    /// Whether rows can be turned: the block is one of a point.
+    pub fn can_turn(&self) -> bool {
+        matches!(self.form, BlockForm::Dense(_))
+    }
+
+    /// Turns two rows; B_D is that of before.
+    ///
+    /// # Panics
+    /// If the block is coupled.
+    pub fn turn(&mut self, turn: &Turn) {
+        let BlockForm::Dense(b) = &mut self.form else {
+            panic!("rows of a coupled block are not turned");
+        };
+        let [first, second] = turn.rows.map(|r| r - self.rows.start);
+        for j in 0..b.cols {
+            let turned = turn.of([b.get(first, j), b.get(second, j)]);
+            b.set(first, j, turned[0]);
+            b.set(second, j, turned[1]);
         }
     }
 

@@ -105,6 +105,15 @@ impl JumpEntries {
         self.bd[self.start[j].entries + k] = value;
     }
 
+    /// Replaces the value in B, whether or not the row holds, of the entry with place `k` in the lists of subdomain
+    /// `j`.
+    pub(super) fn set_full(&mut self, j: usize, k: usize, value: f64) {
+        let of = self.start[j].contact..self.start[j + 1].contact;
+        let contact = &mut self.contact[of];
+        let found = contact.binary_search_by_key(&(k as u32), |c| c.0);
+        contact[found.expect("the entry is one of B_gl")].1 = value;
+    }
+
     /// Changes the positions of the entries of subdomain `j`.
     pub(super) fn renumber(&mut self, j: usize, new: impl Fn(u32) -> u32) {
         let of = self.start[j].entries..self.start[j + 1].entries;

@@ -10,4 +10,6 @@ mod ghost_rows;
 pub mod operator;
 pub mod scaling;
 mod switch;
+pub mod turn;
+mod turned;
 pub mod weights;

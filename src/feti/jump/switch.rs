@@ -86,18 +86,7 @@ impl Jump {
         }
         self.active.copy_from_slice(active);
         self.reconcile(blocks.iter().map(|&k| k as usize));
-        let mut ghost = 0;
-        for entry in exchange(comm, outgoing) {
-            let j = self.local_index(entry.subdomain);
-            // Entries of a row follow each other.
-            if self.ghosts.get(ghost) != Some(&entry.row) {
-                let found = self.ghosts.binary_search(&entry.row);
-                ghost = found.expect("rows of a block are ghosts of its subdomains");
-            }
-            let k = self.places.entry(ghost, j as u32, entry.local);
-            self.columns.set_b(j, k, entry.b);
-            self.columns.set_bd(j, k, entry.bd);
-        }
+        self.change(exchange(comm, outgoing));
         rows.len()
     }
 }

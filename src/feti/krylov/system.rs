@@ -12,6 +12,7 @@ use super::recycling::Recycle;
 use super::tally::Tally;
 use crate::feti::deflation::matrices::DeflationMatrices;
 use crate::feti::deflation::Deflation;
+use crate::feti::jump::turn::Turn;
 use crate::feti::operators::dual::Dual;
 use crate::substructures::Problem;
 use crate::Result;
@@ -103,6 +104,13 @@ impl DualSystem {
         }
         self.recycled.borrow_mut().forget();
         self.dual.borrow_mut().set_compliance(compliance);
+    }
+
+    /// Turns rows of this rank; see [`Dual::turn`]. Kept directions belong to the old rows and are forgotten.
+    /// Collective.
+    pub(crate) fn turn(&self, problem: &Problem, turns: &[Turn]) {
+        self.recycled.borrow_mut().forget();
+        self.dual.borrow_mut().turn(problem, turns);
     }
 
     /// Replaces the multipliers of rows that do not hold and have a law with given ones; empty: they have none.

@@ -5,6 +5,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
+use crate::feti::jump::turn::Turn;
 use crate::feti::operators::preconditioner::DualPreconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::projector::natural::NaturalCoarse;
@@ -70,6 +71,15 @@ impl Dual {
             self.stale = false;
         }
         Ok((changed as usize, renewed))
+    }
+
+    /// Turns rows of this rank in B_gl, B_D and B R. What is derived from them is renewed with the next set.
+    /// Collective.
+    pub(crate) fn turn(&mut self, problem: &Problem, turns: &[Turn]) {
+        let session = self.stiffness.session.clone();
+        self.stiffness.jump.turn(session.comm(), turns);
+        self.natural.turned(problem, &self.stiffness);
+        self.stale = true;
     }
 
     /// Marks everything derived from the set of rows as outdated: it is renewed with the next set, whether or not that

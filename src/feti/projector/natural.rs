@@ -154,6 +154,15 @@ impl NaturalCoarse {
         team.is_some_and(|team| team.is_shared())
     }
 
+    /// Takes B R from rows of B_gl that were turned. The bodies that they join are those of before. Collective.
+    pub(crate) fn turned(&mut self, problem: &Problem, stiffness: &Stiffness) {
+        if self.r > 0 {
+            self.all = self.all_rows(problem, stiffness).numbered(&self.known);
+            self.last = RefCell::default();
+            self.numbers = RefCell::default();
+        }
+    }
+
     /// Finds the sparsity of GᵀG, the order in which it is factored, and the columns that this rank has to know for the
     /// weight Q that is in use. Collective.
     fn arrange(&mut self, problem: &Problem, stiffness: &Stiffness) -> Result<()> {

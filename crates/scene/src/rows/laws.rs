@@ -122,9 +122,7 @@ impl Place<'_> {
     /// Whether friction is solved here.
     fn check(&self) -> Result<()> {
         let update = self.spec.steps.as_ref().is_some_and(|s| s.update);
-        let why = if self.bodies[0].mesh().dim() == 3 {
-            "in space, expected a scene in the plane"
-        } else if self.row.combination.is_some() {
+        let why = if self.row.combination.is_some() {
             "between sides whose nodes do not match, expected nodes that lie opposite each other"
         } else if update {
             "with `update` in [steps], expected contacts that stay as they are"

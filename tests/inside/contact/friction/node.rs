@@ -14,6 +14,8 @@ fn node(state: NodeState, g: f64) -> Node {
         stiffness: 2.0,
         state,
         g,
+        axis: [1.0, 0.0],
+        slipped: 0.0,
     }
 }
 
@@ -88,10 +90,50 @@ fn the_error_is_a_force() {
             active: &[true, true],
         })
     };
-    assert_eq!(of(NodeState::Stick, [2.0, 0.5, 0.0]), 0.0);
-    assert_eq!(of(NodeState::Stick, [2.0, -1.5, 0.0]), 0.5);
-    assert_eq!(of(RIGHT, [2.0, 1.0, 0.3]), 0.0);
-    assert_eq!(of(RIGHT, [2.0, 0.75, 0.3]), 0.25);
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
+    near(of(NodeState::Stick, [2.0, 0.5, 0.0]), 0.0);
+    near(of(NodeState::Stick, [2.0, -1.5, 0.0]), 0.5);
+    near(of(RIGHT, [2.0, 1.0, 0.3]), 0.0);
+    near(of(RIGHT, [2.0, 0.75, 0.3]), 0.25);
     // It slips against its force.
-    assert_eq!(of(RIGHT, [2.0, 1.0, -0.3]), 0.6);
+    near(of(RIGHT, [2.0, 1.0, -0.3]), 0.6);
+}
+
+/// A node in space that slips along (0.6, 0.8): its rows are turned there, and the second one is a spring.
+#[test]
+fn rows_in_space_are_turned_along_the_slip() {
+    let mut node = Node {
+        tangential: vec![1, 2],
+        ..node(NodeState::Slip([0.6, 0.8]), 1.0)
+    };
+    node.slipped = 0.25;
+    assert_eq!((node.holds(), node.across()), ([false, true], 0.25));
+    let turn = node.turn(false).expect("a turn");
+    assert_eq!((turn.rows, turn.by), ([1, 2], [0.6, 0.8]));
+    assert_eq!(node.turn(false), None);
+    let [along, across] = node.on_rows(node.force());
+    assert!((along - 1.0).abs() < 1e-15 && across.abs() < 1e-15);
+    // A force across of 0.1, and the slip that belongs to it: w turns towards it by as much as λ_t.
+    let step = Step {
+        lambda: &[2.0, 1.0, 0.1],
+        gaps: &[0.0, 0.25, 0.0],
+        active: &[true, false, true],
+    };
+    let change = node.update(&step);
+    assert!(!change.flips);
+    let NodeState::Slip(d) = node.state else {
+        panic!("{node:?}");
+    };
+    let angle = 0.1f64.atan();
+    let wanted = [
+        0.6 * angle.cos() - 0.8 * angle.sin(),
+        0.8 * angle.cos() + 0.6 * angle.sin(),
+    ];
+    assert!(
+        (d[0] - wanted[0]).abs() < 1e-14 && (d[1] - wanted[1]).abs() < 1e-14,
+        "{d:?}"
+    );
+    let back = node.turn(true).expect("a turn");
+    assert_eq!(back.by, [0.6, -0.8]);
+    assert_eq!(node.turn(true), None);
 }
