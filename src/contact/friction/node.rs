@@ -178,10 +178,6 @@ impl Node {
         if !step.active[self.normal] && !self.bound.acts_apart() {
             return (NodeState::Apart, 0.0);
         }
-        // Nothing is known yet of a node that begins to touch.
-        if self.state == NodeState::Apart {
-            return (NodeState::Stick, g);
-        }
         let [force, slip] = self.tangent(step);
         let s = [0, 1].map(|k| force[k] + self.stiffness * slip[k]);
         let size = length(s);

@@ -69,10 +69,11 @@ fn a_node_that_opens_has_no_friction_but_a_given_one() {
         after(node(RIGHT, 1.0), [0.0, 1.0, 0.3], false).0,
         NodeState::Apart
     );
-    assert_eq!(
-        after(node(NodeState::Apart, 0.0), [0.0, 0.0, 0.3], true).0,
-        NodeState::Stick
-    );
+    // A node that begins to touch slips on where it has slid, at first without a force.
+    let begins = after(node(NodeState::Apart, 0.0), [0.0, 0.0, 0.3], true);
+    assert_eq!((begins.0, begins.1), (RIGHT, 0.0));
+    let still = after(node(NodeState::Apart, 0.0), [0.0, 0.0, 0.0], true);
+    assert_eq!(still.0, NodeState::Stick);
     let given = Node {
         bound: FrictionBound::Tresca(0.25),
         ..node(RIGHT, 0.25)
