@@ -301,3 +301,52 @@ fn friction_in_space_is_the_same_in_all_directions() {
     let moves = text.contains("slides along") || text.contains("turns about y");
     assert!(text.contains("\"block\"") && moves, "{text}");
 }
+
+/// The bound of the error, for given forces of friction at the end of the loop, against a far more exact solution. Soft
+/// rows have none, and say so.
+#[test]
+fn the_bound_of_the_error_holds_with_friction() {
+    with_session(|session| {
+        let at = |friction: &str, rtol: f64| {
+            let scene = Scene::parse("s.toml", &incline(0.02, friction)).expect("a scene");
+            let problem = scene.substructures(&|_| true).expect("a problem");
+            let settings = MethodSettings::default().rtol(rtol).certify(true);
+            let mut solver = FetiFeti::new(session, problem, settings).expect("a set-up");
+            let solution = solver.solve().expect("a solution");
+            assert!(solution.converged(), "{friction}: {}", solution.status);
+            (solver, solution)
+        };
+        for friction in ["tresca = 0.0225", "friction = 0.3"] {
+            let (solver, rough) = at(friction, 1e-4);
+            let (_, exact) = at(friction, 1e-10);
+            let mut square = 0.0;
+            for (sub, (a, b)) in solver
+                .problem()
+                .local
+                .iter()
+                .zip(rough.u.iter().zip(&exact.u))
+            {
+                let apart: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+                let mut force = vec![0.0; apart.len()];
+                sub.k.mul(&apart, &mut force);
+                square += apart.iter().zip(&force).map(|(u, f)| u * f).sum::<f64>();
+            }
+            let bound = rough.certified.expect("it was asked for").expect("a bound");
+            let error = square.max(0.0).sqrt();
+            // With Coulomb's law the forces of friction have an error of their own.
+            let allowed = if friction.starts_with("tresca") {
+                1.0
+            } else {
+                10.0
+            };
+            assert!(
+                error <= allowed * bound.most,
+                "{friction}: {error} {bound:?}"
+            );
+            assert!(bound.most < 1e-2 * bound.size, "{friction}: {bound:?}");
+        }
+        let (_, soft) = at("stiffness = 10\nfriction = 0.3", 1e-6);
+        let why = soft.certified.expect("it was asked for").expect_err("none");
+        assert!(why.text().contains("give way"), "{}", why.text());
+    });
+}

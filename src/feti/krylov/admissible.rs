@@ -3,6 +3,7 @@
 use super::loads::Loads;
 use crate::feti::jump::operator::Jump;
 use crate::feti::method::LinearMethod;
+use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::Result;
 use cholesky::lanes::LANES;
@@ -74,9 +75,11 @@ fn closed(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option<Admissible>> {
             (largest[1] > 0.0, largest[0])
         };
         if !more && far <= CLOSED * length {
-            let slack = gaps.iter().zip(&held);
-            let slack = slack.map(|(gap, held)| if *held { 0.0 } else { (-gap).max(0.0) });
-            found = Some(slack.collect());
+            // The force of a node that slips is given, and does its work on whatever slip there is.
+            let law = &method.dual().stiffness.jump.law;
+            let open = |r: &usize| !held[*r] && !law[*r].is_friction();
+            let slack = |r: usize| if open(&r) { (-gaps[r]).max(0.0) } else { 0.0 };
+            found = Some((0..gaps.len()).map(slack).collect());
             break;
         }
         if round == ROUNDS {
@@ -184,13 +187,26 @@ fn pushing(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
         }
         method.set_active(&held)?;
         let dual = method.dual();
-        let load = load.get_or_insert_with(|| Loads::new(&method.problem, &dual).kernel);
+        let load = match &load {
+            Some(load) => load,
+            None => load.insert(given_loads(method, &dual, lambda)?.kernel),
+        };
         let rows = dual.multipliers()?;
         rows.array_mut()?.copy_from_slice(&out);
         dual.natural.balance(dual.comm(), load, &rows)?;
         out.copy_from_slice(&rows.array()?);
     }
     Ok(found.then_some(out))
+}
+
+/// The loads with the forces of nodes that slip. Collective.
+fn given_loads(method: &LinearMethod, dual: &Dual, lambda: &[f64]) -> Result<Loads> {
+    let jump = &dual.stiffness.jump;
+    let slips = |r: usize| jump.law[r].is_friction() && !jump.active[r];
+    let given = |r: usize| if slips(r) { lambda[r] } else { 0.0 };
+    let given: Vec<f64> = (0..lambda.len()).map(given).collect();
+    let f: Vec<&[f64]> = method.problem.local.iter().map(|s| &s.f[..]).collect();
+    Loads::new(&method.problem, dual).with_multipliers(dual, &f, &given)
 }
 
 /// Gives dependent rows, some of which pull, other multipliers with the same forces, if there are some that push.
