@@ -350,3 +350,34 @@ fn the_bound_of_the_error_holds_with_friction() {
         assert!(why.text().contains("give way"), "{}", why.text());
     });
 }
+
+/// Two blocks whose nodes do not match: as tied ones where friction holds everywhere, up to the friction of the force
+/// that presses them together where it does not.
+#[test]
+fn sides_that_do_not_match_have_friction() {
+    let blocks = |joint: &str| {
+        format!(
+            "physics = \"elasticity\"\n[[body]]\nname = \"low\"\nsize = [2, 1]\nelements = [14, 7]\n\
+             subdomains = [2, 1]\nyoung = 1\npoisson = 0.3\ndirichlet = {{ bottom = 0 }}\n[[body]]\nname = \"high\"\n\
+             origin = [0.5, 1]\nsize = 1\nelements = 10\nsubdomains = 2\nyoung = 2\npoisson = 0.3\n\
+             traction = {{ top = [0.01, -0.1] }}\n{joint}\nbodies = [\"low\", \"high\"]\nmultipliers = \"high\"\n"
+        )
+    };
+    let held = solved(blocks("[[contact]]\nfriction = 1e3")).expect("a solution");
+    let tied = solved(blocks("[[tie]]")).expect("a solution");
+    assert!(held.converged() && tied.converged());
+    assert!(held.rows().iter().all(|r| r.holds()));
+    near(held.energy, tied.energy, 1e-9, "tied");
+    let slips = solved(blocks("[[contact]]\nfriction = 0.11")).expect("it stands");
+    assert!(slips.converged(), "{}", slips.status);
+    let rows = slips.tangential_rows();
+    let drag: f64 = rows.iter().map(|r| r.multiplier * r.normal()[0]).sum();
+    near(drag.abs(), 0.01, 1e-7, "friction");
+    assert!(rows.iter().filter(|r| r.state == RowState::Slips).count() > rows.len() / 2);
+    let error = solved(blocks("[[contact]]\nfriction = 0.09")).map(|s| s.status);
+    let text = error.expect_err("it slides").to_string();
+    assert!(
+        text.contains("\"high\" is pushed away for ever where it slides along x"),
+        "{text}"
+    );
+}

@@ -10,6 +10,7 @@ use crate::geometry::interface::BodyInterface;
 use crate::model::spec::SceneSpec;
 use crate::model::steps::{Factors, Steps};
 use crate::rows::equations;
+use crate::rows::laws;
 use crate::rows::points;
 use base::Result;
 use std::collections::HashSet;
@@ -74,7 +75,8 @@ impl Joined<'_> {
         )?;
         let mut chained = equations::collect(bodies, &spec.equations)?;
         chained.extend(mortar);
-        equations::join(bodies, &mut points, &mut rows, &mut chained);
+        let slides = |row: &Row| laws::has_friction(spec, row);
+        equations::join(bodies, &mut points, &mut rows, &mut chained, slides);
         rows.extend(chained);
         rows.shrink_to_fit();
         Ok(SceneRows {

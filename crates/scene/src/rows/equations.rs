@@ -70,12 +70,14 @@ pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Row
 }
 
 /// Gives rows with common degrees of freedom one block and one subdomain, the lowest of each. `rows` are those at the
-/// points, and stay in their order; `chained` lead from point to point.
+/// points, and stay in their order; `chained` lead from point to point, and those that slide have tangential rows, with
+/// all components at their nodes.
 pub(crate) fn join(
     bodies: &[Body],
     points: &mut [InterfacePoint],
     rows: &mut [Row],
     chained: &mut [Row],
+    slides: impl Fn(&Row) -> bool,
 ) {
     if chained.is_empty() {
         return;
@@ -90,8 +92,16 @@ pub(crate) fn join(
         }
     }
     for (e, row) in chained.iter().enumerate() {
-        for (dof, _) in row.terms(bodies).iter() {
-            let known = *of_dof.entry(*dof).or_insert(points.len() + e);
+        let mut dofs: Vec<u64> = row.terms(bodies).iter().map(|t| t.0).collect();
+        if slides(row) {
+            let nodes = [0, 1].into_iter().flat_map(|side| row.side(side));
+            for (node, _) in nodes {
+                let components = 0..bodies[node.body].components;
+                dofs.extend(components.map(|c| node.dof(bodies, c)));
+            }
+        }
+        for dof in dofs {
+            let known = *of_dof.entry(dof).or_insert(points.len() + e);
             sets.join(known, points.len() + e);
         }
     }

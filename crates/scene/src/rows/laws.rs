@@ -5,7 +5,8 @@
 //! scene, in the order of the normal rows.
 
 use super::at_node::AtNode;
-use super::row::{Bound, Row};
+use super::mortar::merged;
+use super::row::{Bound, Combination, Row};
 use crate::body::Body;
 use crate::model::entry::EntryId;
 use crate::model::friction::{ContactLaw, FrictionSpec};
@@ -122,8 +123,9 @@ impl Place<'_> {
     /// Whether friction is solved here.
     fn check(&self) -> Result<()> {
         let update = self.spec.steps.as_ref().is_some_and(|s| s.update);
-        let why = if self.row.combination.is_some() {
-            "between sides whose nodes do not match, expected nodes that lie opposite each other"
+        let solid = self.bodies[0].mesh().dim() == 3;
+        let why = if solid && self.row.combination.is_some() {
+            "in space between sides whose nodes do not match, expected nodes that lie opposite each other"
         } else if update {
             "with `update` in [steps], expected contacts that stay as they are"
         } else {
@@ -202,11 +204,24 @@ fn tangents(n: [f64; 3], dim: usize) -> Vec<[f64; 3]> {
     vec![first, cross(n, first)]
 }
 
-/// The tangential row beside a normal one.
+/// The tangential row beside a normal one, between the same nodes with the same weights.
 fn tangential(bodies: &[Body], normal: &Row, direction: [f64; 3]) -> Row {
-    let given = normal
-        .members
-        .map(|m| m.map_or(0.0, |m| m.along(bodies, direction).given));
+    let mut given = [0.0; 2];
+    let mut terms: Vec<(u64, f64)> = Vec::new();
+    for (side, sign) in [(0, 1.0), (1, -1.0)] {
+        for (node, weight) in normal.side(side) {
+            let along = node.along(bodies, direction);
+            given[side] += weight * along.given;
+            let all = along.terms.into_iter();
+            terms.extend(all.map(|(dof, n)| (dof, sign * weight * n)));
+        }
+    }
+    let combination = normal.combination.as_ref().map(|combination| {
+        Box::new(Combination {
+            terms: merged(terms),
+            ..(**combination).clone()
+        })
+    });
     Row {
         law: Law::Friction,
         holds: true,
@@ -216,9 +231,16 @@ fn tangential(bodies: &[Body], normal: &Row, direction: [f64; 3]) -> Row {
             value: 0.0,
             given,
         })),
-        combination: None,
+        combination,
         ..normal.clone()
     }
+}
+
+/// Whether a row has friction: its tangential rows have terms in all components at its nodes.
+pub(crate) fn has_friction(spec: &SceneSpec, row: &Row) -> bool {
+    let entries = row.limits().iter().filter_map(|l| l.entry);
+    let mut laws = entries.filter_map(|entry| of_entry(spec, entry));
+    laws.any(|law| law.friction.is_some())
 }
 
 impl NodeLaw {

@@ -108,7 +108,7 @@ pub(crate) fn collect(
 }
 
 /// Terms with each degree of freedom once: sides of one body may have common nodes.
-fn merged(mut terms: Vec<(u64, f64)>) -> Vec<(u64, f64)> {
+pub(super) fn merged(mut terms: Vec<(u64, f64)>) -> Vec<(u64, f64)> {
     terms.sort_by_key(|t| t.0);
     let same = terms.chunk_by(|a, b| a.0 == b.0);
     same.map(|t| (t[0].0, t.iter().map(|t| t.1).sum()))
