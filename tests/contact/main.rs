@@ -8,6 +8,7 @@ mod certified;
 mod elastic;
 mod failed;
 mod friction;
+mod friction_reference;
 mod jumps;
 mod many;
 mod mortar;
