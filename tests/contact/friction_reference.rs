@@ -215,8 +215,8 @@ fn compare(ids: impl Iterator<Item = u64>) -> Tally {
         let Tally { states, ratios, .. } = &tally;
         let [median, most] = [ratios.len() / 2, ratios.len() - 1].map(|k| ratios[k]);
         println!(
-            "{} right (forces within {:.1e}), {} undecided, {} not solved; rows that stick, slip, are apart: {states:?}; \
-             steps over those without friction: median {median:.2}, most {most:.2}",
+            "{} right (forces within {:.1e}), {} undecided, {} not solved; rows that stick, slip, are apart: \
+             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}",
             tally.right, tally.force, tally.undecided, tally.failed
         );
         tally
