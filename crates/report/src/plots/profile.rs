@@ -25,14 +25,18 @@ const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 pub struct InterfaceProfile {
     /// Its nodes.
     pub nodes: InterfaceNodes,
-    /// Name of the coordinate along the interface, such as `y`.
+    /// Name of the coordinate along the interface: `x` or `y`, or `t` for the parameter of a curved one.
     pub label: String,
 }
 
 impl InterfaceProfile {
     /// Position of a node along the interface.
     fn t(&self, k: usize) -> f64 {
-        self.nodes.t[k][0]
+        match &self.label[..] {
+            "x" => self.nodes.points[k][0],
+            "y" => self.nodes.points[k][1],
+            _ => self.nodes.t[k][0],
+        }
     }
 
     /// The nodes in order of their position.
@@ -44,7 +48,7 @@ impl InterfaceProfile {
 
     /// Smallest and largest position, with a margin.
     fn range(&self) -> (f64, f64) {
-        let t: Vec<f64> = self.nodes.t.iter().map(|t| t[0]).collect();
+        let t: Vec<f64> = (0..self.nodes.t.len()).map(|k| self.t(k)).collect();
         let (low, high) = extremes(&t);
         let air = if high > low {
             0.02 * (high - low)

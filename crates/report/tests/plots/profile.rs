@@ -35,7 +35,7 @@ fn the_zone_reaches_half_way_to_its_neighbours() {
     let mut q = p;
     q.nodes = InterfaceNodes {
         t: [1.0, 0.0, 0.5, 0.25, 0.75].map(|t| [t, 0.0]).to_vec(),
-        points: vec![[0.0; 3]; 5],
+        points: [1.0, 0.0, 0.5, 0.25, 0.75].map(|y| [7.0, y, 0.0]).to_vec(),
         gap: vec![0.0; 5],
         multiplier: vec![1.0; 5],
         active: vec![true, false, true, false, false],
@@ -47,6 +47,18 @@ fn the_zone_reaches_half_way_to_its_neighbours() {
     assert_eq!(ranges(&q), [(0.0, 1.0)]);
     q.nodes.active = vec![false; 5];
     assert!(ranges(&q).is_empty());
+}
+
+#[test]
+fn a_straight_interface_is_drawn_along_its_coordinate() {
+    let mut p = sample("a|b", 5, 1.0);
+    for (k, point) in p.nodes.points.iter_mut().enumerate() {
+        *point = [3.0 + 2.0 * k as f64, -1.0, 0.0];
+    }
+    for (label, last) in [("x", 11.0), ("y", -1.0), ("t", 1.0)] {
+        p.label = label.into();
+        assert_eq!(p.t(4), last);
+    }
 }
 
 #[test]
