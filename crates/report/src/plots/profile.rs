@@ -19,6 +19,8 @@ const CLOSED: f64 = 1e-11;
 const CLOSED_IN_SPACE: f64 = 1e-6;
 /// Background of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
+/// Background where the sides slip.
+const SLIPS: Colour = Colour(0xf9, 0xe6, 0xcf);
 
 /// An interface in the plane.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -62,37 +64,56 @@ impl InterfaceProfile {
         }
     }
 
-    /// The contact zone. Its ends are half-way between the last node in contact and the next open one.
+    /// The zone of a node: its label and its colour; `None` where the sides are apart.
+    fn zone_of(&self, k: usize) -> Option<(&'static str, Colour)> {
+        match self.nodes.friction.get(k).map(|f| f.state) {
+            Some("slip") => Some(("slips", SLIPS)),
+            Some("stick") => Some(("sticks", ZONE)),
+            Some("open") => None,
+            Some(_) | None => self.nodes.active[k].then_some(("in contact", ZONE)),
+        }
+    }
+
+    /// The contact zone; with friction where the sides stick and where they slip. Its ends are half-way between nodes of
+    /// different zones.
     fn zone(&self) -> Vec<Band> {
         let order = self.order();
         let t = |k: usize| self.t(order[k]);
+        let zone = |k: usize| self.zone_of(order[k]);
         let mut out = Vec::new();
         let mut k = 0;
         while k < order.len() {
-            let first = k;
-            while k < order.len() && self.nodes.active[order[k]] {
+            let (first, kind) = (k, zone(k));
+            let same = |k: usize| zone(k).map(|z| z.0) == kind.map(|z| z.0);
+            while k < order.len() && same(k) {
                 k += 1;
             }
-            if k > first {
-                let from = if first > 0 {
-                    0.5 * (t(first - 1) + t(first))
-                } else {
-                    t(0)
-                };
-                let to = if k < order.len() {
-                    0.5 * (t(k - 1) + t(k))
-                } else {
-                    t(k - 1)
-                };
-                out.push(Band {
-                    label: "in contact".into(),
-                    range: (from, to),
-                    colour: ZONE,
-                });
-            }
-            k += 1;
+            let Some((label, colour)) = kind else {
+                continue;
+            };
+            let from = if first > 0 {
+                0.5 * (t(first - 1) + t(first))
+            } else {
+                t(0)
+            };
+            let to = if k < order.len() {
+                0.5 * (t(k - 1) + t(k))
+            } else {
+                t(k - 1)
+            };
+            out.push(Band {
+                label: label.into(),
+                range: (from, to),
+                colour,
+            });
         }
         out
+    }
+
+    /// The shear stress of friction node by node, its absolute value; empty without friction.
+    fn shear(&self) -> Vec<f64> {
+        let size = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        self.nodes.friction.iter().map(|f| size(f.shear)).collect()
     }
 
     /// The panels of multiplier and gap, one below the other; `largest_gap` is that of the whole figure.
@@ -138,7 +159,13 @@ impl InterfaceProfile {
         } else {
             ("multiplier", &self.nodes.multiplier)
         };
+        let shear = self.shear();
         let (least, most) = extremes(force);
+        let most = shear
+            .iter()
+            .copied()
+            .filter(|v| v.is_finite())
+            .fold(most, f64::max);
         let (least, most) = (least.min(0.0), most.max(0.0));
         let shown = if most > least {
             let air = 0.06 * (most - least);
@@ -150,15 +177,21 @@ impl InterfaceProfile {
             range: Some(range),
             ..Axis::new(label, Scale::Linear)
         };
-        let panel = |title: &str, below: &str, y: Axis, series: Series| Panel {
-            bands: self.zone(),
-            ..Panel::new(title, within(below, x), y, vec![zero(x), series])
+        let panel = |title: &str, below: &str, y: Axis, mut series: Vec<Series>| {
+            series.insert(0, zero(x));
+            Panel {
+                bands: self.zone(),
+                ..Panel::new(title, within(below, x), y, series)
+            }
         };
-        let force = curve(what, force, Colour::CYCLE[0]);
+        let mut forces = vec![curve(what, force, Colour::CYCLE[0])];
+        if !shear.is_empty() {
+            forces.push(curve("shear stress", &shear, Colour::CYCLE[2]));
+        }
         let gap = curve("gap", &self.nodes.gap, Colour::CYCLE[1]);
         [
-            panel(&self.nodes.name, "", within(what, shown), force),
-            panel("", &self.label, within("gap", y), gap),
+            panel(&self.nodes.name, "", within(what, shown), forces),
+            panel("", &self.label, within("gap", y), vec![gap]),
         ]
     }
 }

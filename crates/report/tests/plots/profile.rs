@@ -1,6 +1,7 @@
 //! Unit tests of `crates/report/src/plots/profile.rs`.
 
 use super::*;
+use crate::interfaces::NodeFriction;
 use crate::scratch::Scratch;
 
 /// An interface of n nodes on 0..1 that touches in the middle half, with a force that grows with `size`.
@@ -47,6 +48,33 @@ fn the_zone_reaches_half_way_to_its_neighbours() {
     assert_eq!(ranges(&q), [(0.0, 1.0)]);
     q.nodes.active = vec![false; 5];
     assert!(ranges(&q).is_empty());
+}
+
+#[test]
+fn stick_and_slip_are_zones_of_their_own() {
+    let mut p = sample("a|b", 5, 1.0);
+    p.nodes.friction = ["open", "slip", "stick", "stick", "slip"]
+        .map(|state| NodeFriction {
+            state,
+            shear: [3.0, -4.0, 0.0],
+            slip: [0.0; 3],
+        })
+        .to_vec();
+    let zones: Vec<(String, (f64, f64))> = { p.zone().into_iter() }
+        .map(|band| (band.label, band.range))
+        .collect();
+    let wanted = [
+        ("slips", (0.125, 0.375)),
+        ("sticks", (0.375, 0.875)),
+        ("slips", (0.875, 1.0)),
+    ];
+    assert_eq!(
+        zones,
+        wanted.map(|(label, range)| (label.to_string(), range))
+    );
+    assert_eq!(p.shear(), [5.0; 5]);
+    let [forces, gaps] = p.panels(0.0);
+    assert_eq!((forces.series.len(), gaps.series.len()), (3, 2));
 }
 
 #[test]
