@@ -74,8 +74,8 @@ impl InterfaceProfile {
         }
     }
 
-    /// The contact zone; with friction where the sides stick and where they slip. Its ends are half-way between nodes of
-    /// different zones.
+    /// The contact zone; with friction where the sides stick and where they slip. Its ends are half-way between nodes
+    /// of different zones.
     fn zone(&self) -> Vec<Band> {
         let order = self.order();
         let t = |k: usize| self.t(order[k]);
