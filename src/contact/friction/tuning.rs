@@ -4,7 +4,8 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FrictionTuning {
-    /// Factor on the reduction of the residual in a step while forces of friction change. Loose steps mislead the states.
+    /// Factor on the reduction of the residual in a step while forces of friction change. Loose steps mislead the
+    /// states.
     ///
     /// Ten times more: a roller bearing with friction takes 24 steps in place of 9; a hundred times more: 200 are not
     /// enough.
