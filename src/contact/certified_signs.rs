@@ -4,6 +4,7 @@
 //! and may still have the wrong sign when displacements have converged. The certificate then refines the solution with
 //! the rows that hold, and multipliers get their digits: some may turn out to pull.
 
+use super::friction;
 use super::judge::JudgeSizes;
 use super::state::State;
 use super::tuning::Tuning;
@@ -56,7 +57,8 @@ pub fn signs(method: &LinearMethod, tuning: &Tuning, solution: &LinearSolution) 
             active[r] = true;
         }
     }
-    if any(dual.comm(), active != jump.active) {
+    let slides = friction::error(method, solution)? > pull;
+    if any(dual.comm(), active != jump.active) || slides {
         jump.release(&active, &mut lambda);
         return Ok(Signs::Wrong(State::warm(lambda, &active)));
     }

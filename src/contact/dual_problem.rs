@@ -14,8 +14,9 @@ use super::certified_signs::{signs, Signs};
 use super::course::DualCourse;
 use super::driver::{self, Begin, Begun, InnerProblem, Verdict};
 use super::existence::Existence;
-use super::friction::{self, Friction, GivenMultipliers};
+use super::friction::{self, Friction};
 use super::lagrangian::AugmentedLagrangian;
+use super::modes::GivenMultipliers;
 use super::settings::{ContactSettings, ContactType};
 use super::smalbe::Smalbe;
 use super::state::{Observer, State, Step};
@@ -23,7 +24,6 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::{Error, Result};
-use parallel::exchange::max_all;
 
 /// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
 /// the method hold that held before. Collective.
@@ -49,7 +49,7 @@ pub(crate) fn solve(
         let problem = DualProblem {
             method,
             settings,
-            before: start.map_or(0, |s| s.steps),
+            start,
             friction,
         };
         let _given = GivenMultipliers::of(method);
@@ -61,8 +61,8 @@ pub(crate) fn solve(
 struct DualProblem<'m> {
     method: &'m LinearMethod,
     settings: &'m ContactSettings,
-    /// Steps of the loop that is continued.
-    before: usize,
+    /// The state from which the loop goes on.
+    start: Option<&'m State>,
     /// Whether there is friction, or soft contact.
     friction: bool,
 }
@@ -74,32 +74,6 @@ impl DualProblem<'_> {
         let (method, dual) = (self.method, self.method.dual());
         let load = Loads::new(&method.problem, &dual).kernel;
         Existence::new(method, &dual, self.settings).if_many(&load, lambda)
-    }
-
-    /// The verdict on a certified solution with friction, after so many steps and rounds. Collective.
-    fn judged(
-        &self,
-        mut certified: LinearSolution,
-        (steps, round): (usize, usize),
-    ) -> Result<Verdict<DualCourse>> {
-        let (method, tuning) = (self.method, &self.settings.tuning);
-        let rtol = method.ksp.tolerances()?.0;
-        let largest = certified.lambda.iter().map(|l| l.abs()).fold(0.0, f64::max);
-        let mut largest = [largest];
-        max_all(method.session.comm(), &mut largest);
-        let allowed = (tuning.certified_wrong * rtol).max(tuning.certified_rounding) * largest[0];
-        if friction::error(method, &certified)? <= allowed {
-            return Ok(Verdict::Done(certified));
-        }
-        if round == tuning.certified_rounds {
-            certified.status = Status::Certificate;
-            return Ok(Verdict::Done(certified));
-        }
-        let active = method.dual().stiffness.jump.active.clone();
-        let mut state = State::warm(certified.lambda.clone(), &active);
-        state.accuracy = tuning.certified_reduction.powi(round as i32 + 1);
-        state.steps = self.before + steps;
-        Ok(Verdict::Wrong(state, certified))
     }
 }
 
@@ -165,7 +139,6 @@ impl InnerProblem for DualProblem<'_> {
             return Ok(Verdict::Done(certified));
         }
         match signs(method, tuning, &certified)? {
-            Signs::Right if self.friction => self.judged(certified, (steps, round)),
             Signs::Right => Ok(Verdict::Done(certified)),
             Signs::Shared(lambda) => {
                 let shared = method.with_multipliers(certified, lambda)?;
@@ -177,7 +150,11 @@ impl InnerProblem for DualProblem<'_> {
             }
             Signs::Wrong(mut state) => {
                 state.accuracy = tuning.certified_reduction.powi(round as i32 + 1);
-                state.steps = self.before + steps;
+                if let Some(start) = self.start {
+                    state.steps = start.steps;
+                    state.slid.clone_from(&start.slid);
+                }
+                state.steps += steps;
                 Ok(Verdict::Wrong(state, certified))
             }
         }

@@ -282,24 +282,20 @@ impl<'a> ActiveSet<'a> {
         self.fresh = false;
     }
 
-    /// Puts rows that `may` come back into `active` so that the load drives no body away. Collective.
+    /// Puts rows into `active` so that the load drives no body away, with `friction` also tangential ones. Collective.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.
-    pub fn hold(
-        &self,
-        active: &mut [bool],
-        load: &KernelLoad,
-        may: &dyn Fn(usize) -> bool,
-    ) -> Result<usize> {
-        let (gaps, law) = (&self.gaps, &self.method.dual().stiffness.jump.law);
-        // Of nodes that slip the one that has slipped least: the others then slip on in their directions.
+    pub fn hold(&self, active: &mut [bool], load: &KernelLoad, friction: bool) -> Result<usize> {
+        let dual = self.method.dual();
+        let (gaps, law) = (&self.gaps, &dual.stiffness.jump.law);
         let score = |r: usize| match law[r].is_friction() {
-            true => -gaps[r].abs(),
+            // Of nodes that slip the one that has slipped least: the others then slip on in their directions.
+            true if friction => -gaps[r].abs(),
+            true => f64::NEG_INFINITY,
             false => self.state.lambda[r] + gaps[r],
         };
-        let dual = self.method.dual();
-        self.repairs.hold_by(&dual, active, &score, load, may)
+        self.repairs.hold(&dual, active, &score, load)
     }
 
     /// The solution at the present state of the loop, after these steps. Collective.

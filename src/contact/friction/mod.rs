@@ -13,7 +13,7 @@ pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
-use super::modes::CompliantRows;
+use super::modes::{CompliantRows, TurnedRows};
 use super::settings::ContactSettings;
 use super::state::{State, Step};
 use super::strategy::{Proposal, Strategy};
@@ -33,24 +33,6 @@ pub fn is_asked_for(method: &LinearMethod) -> bool {
     any(method.session.comm(), some)
 }
 
-/// Given multipliers of rows, for as long as friction needs them: a guard that takes them away again.
-pub struct GivenMultipliers<'a>(&'a LinearMethod);
-
-impl<'a> GivenMultipliers<'a> {
-    /// The rows of `method`, without given multipliers.
-    pub fn of(method: &'a LinearMethod) -> GivenMultipliers<'a> {
-        GivenMultipliers(method)
-    }
-}
-
-impl Drop for GivenMultipliers<'_> {
-    fn drop(&mut self) {
-        if !std::thread::panicking() {
-            self.0.system.set_given_multipliers(Vec::new());
-        }
-    }
-}
-
 /// The strategy.
 pub struct Friction<'a> {
     method: &'a LinearMethod,
@@ -59,8 +41,9 @@ pub struct Friction<'a> {
     /// The loads of the problem.
     loads: Loads,
     nodes: Vec<Node>,
-    /// Springs across slips in space.
+    /// Springs across slips in space, and rows along them.
     springs: CompliantRows<'a>,
+    turned: TurnedRows<'a>,
     /// Steps in a row after which nothing but friction beyond its bound held a body.
     slides: usize,
 }
@@ -95,13 +78,14 @@ impl<'a> Friction<'a> {
             loads,
             nodes,
             springs: CompliantRows::of(method),
+            turned: TurnedRows::of(method),
             slides: 0,
         })
     }
 
     /// Hands the states of the nodes to the equations.
     fn pose(&mut self) -> Result<()> {
-        self.turn(false)?;
+        self.turn()?;
         let given = self.given();
         let mut springs = vec![0.0; given.len()];
         for node in &self.nodes {
@@ -114,22 +98,22 @@ impl<'a> Friction<'a> {
         }
         self.soften(springs);
         self.method.system.set_given_multipliers(given.clone());
-        self.inner.at.loads = self.loads_with(&given)?;
+        self.load(&given)?;
         self.inner.renewed();
         Ok(())
     }
 
-    /// Turns the rows of nodes that slip along their slips, or all rows `back`. The multipliers of the loop turn along.
-    /// Collective.
-    fn turn(&mut self, back: bool) -> Result<()> {
-        let turns = self.nodes.iter_mut().filter_map(|node| node.turn(back));
-        let turns: Vec<Turn> = turns.collect();
-        if !any(self.method.session.comm(), !turns.is_empty()) {
-            return Ok(());
-        }
-        self.method.system.turn(&self.method.problem, &turns);
+    /// Turns the rows of nodes that slip along their slips. Collective.
+    fn turn(&mut self) -> Result<()> {
+        let turns: Vec<Turn> = self.nodes.iter_mut().filter_map(Node::turn).collect();
+        self.turned.turn(&turns);
+        self.follow(&turns)
+    }
+
+    /// Turns the multipliers of the loop along with the rows.
+    fn follow(&self, turns: &[Turn]) -> Result<()> {
         let mut lambda = self.inner.at.lambda.array_mut()?;
-        for turn in &turns {
+        for turn in turns {
             let [a, b] = turn.rows;
             [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
         }
@@ -168,7 +152,8 @@ impl<'a> Friction<'a> {
             let sticks = node.tangential.iter().all(|&t| active[t]);
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
-        self.turn(true)?;
+        let turns = self.turned.back();
+        self.follow(&turns)?;
         self.soften(vec![0.0; active.len()]);
         let lambda = self.inner.at.lambda.to_vec()?;
         let mut given = vec![0.0; active.len()];
@@ -177,7 +162,7 @@ impl<'a> Friction<'a> {
         }
         method.system.set_given_multipliers(given.clone());
         method.set_active(&active)?;
-        self.inner.at.loads = self.loads_with(&given)?;
+        self.load(&given)?;
         (self.inner.state.active, self.inner.state.lambda) = (active, lambda);
         Ok(())
     }
@@ -194,18 +179,21 @@ impl<'a> Friction<'a> {
         given
     }
 
-    fn loads_with(&self, given: &[f64]) -> Result<Loads> {
-        let local = &self.method.problem.local;
-        let f: Vec<&[f64]> = local.iter().map(|s| &s.f[..]).collect();
-        self.loads.with_multipliers(&self.method.dual(), &f, given)
+    /// Hands the loads with given multipliers to the equations. Collective.
+    fn load(&mut self, given: &[f64]) -> Result<()> {
+        let (problem, dual) = (&self.method.problem, &self.method.dual());
+        let (g, kernel) = self.loads.with_multipliers(problem, dual, given)?;
+        let loads = &mut self.inner.at.loads;
+        (loads.g, loads.kernel) = (g, kernel);
+        Ok(())
     }
 
     /// Takes the nodes to the states that follow from the step. Returns the number of flips and the largest change of a
     /// force over all ranks, relative to the largest force of a row. Collective.
     fn update(&mut self) -> Result<(usize, f64)> {
-        let lambda = self.inner.state.lambda.clone();
+        let lambda = &self.inner.state.lambda;
         let step = node::Step {
-            lambda: &lambda,
+            lambda,
             gaps: &self.inner.gaps,
             active: &self.inner.state.active,
         };
@@ -229,9 +217,11 @@ impl<'a> Friction<'a> {
     /// # Errors
     /// Bodies that slide or fly away: for some steps nothing but friction beyond its bound has held them.
     fn hold(&mut self) -> Result<bool> {
-        self.turn(false)?;
+        self.turn()?;
         let given = self.given();
-        let load = self.loads_with(&given)?.kernel;
+        let (problem, dual) = (&self.method.problem, self.method.dual());
+        let (_, load) = self.loads.with_multipliers(problem, &dual, &given)?;
+        drop(dual);
         let mut active = self.inner.state.active.clone();
         for node in &self.nodes {
             // The springs across slips give way as far as a body slides.
@@ -239,8 +229,7 @@ impl<'a> Friction<'a> {
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
         let mut held = active.clone();
-        let any_row = |_: usize| true;
-        self.inner.hold(&mut held, &load, &any_row)?;
+        self.inner.hold(&mut held, &load, true)?;
         let mut restored = false;
         for node in &mut self.nodes {
             let back = node.tangential.iter().any(|&t| held[t] && !active[t]);
@@ -261,8 +250,7 @@ impl<'a> Friction<'a> {
             for (on, law) in active.iter_mut().zip(&law) {
                 *on &= !law.is_friction();
             }
-            let normal = |r: usize| !law[r].is_friction();
-            self.inner.hold(&mut active, &load, &normal)?;
+            self.inner.hold(&mut active, &load, false)?;
         }
         Ok(restored)
     }
@@ -301,9 +289,7 @@ impl Strategy<DualCourse> for Friction<'_> {
         status: Status,
     ) -> Result<LinearSolution> {
         self.rest()?;
-        let Friction { inner, springs, .. } = *self;
-        drop(springs);
-        inner.end(steps, seconds, status)
+        self.inner.end(steps, seconds, status)
     }
 }
 

@@ -32,6 +32,7 @@ pub struct Node {
     bound: FrictionBound,
     /// k, a force per length of the size of the diagonal of K.
     stiffness: f64,
+    /// Its state in the equations.
     pub state: NodeState,
     /// g in the equations.
     pub g: f64,
@@ -41,7 +42,7 @@ pub struct Node {
     slipped: f64,
 }
 
-/// A row of the solution of a step: its multiplier, its gap B u − c, and whether it is to hold.
+/// The solution of a step on the owned rows: multipliers, gaps B u − C λ − c, and which rows are to hold.
 pub struct Step<'s> {
     pub lambda: &'s [f64],
     pub gaps: &'s [f64],
@@ -94,14 +95,12 @@ impl Node {
         }
     }
 
-    /// The turn that brings the first row along the slip, or back to where it was given; `None` if it is there, and in
-    /// the plane.
-    pub fn turn(&mut self, back: bool) -> Option<Turn> {
+    /// The turn that brings the first row along the slip; `None` if it is there, and in the plane.
+    pub fn turn(&mut self) -> Option<Turn> {
         let [a, b] = self.tangential[..] else {
             return None;
         };
         let to = match self.state {
-            _ if back => [1.0, 0.0],
             NodeState::Slip(d) => d,
             NodeState::Apart | NodeState::Stick => return None,
         };

@@ -22,9 +22,8 @@ use bytemuck::{Pod, Zeroable};
 use parallel::parcels::Parcels;
 
 /// Puts rows back into `active` until the active rows hold all rigid motions that the load drives. For each
-/// driven motion it takes the row with the largest `score` among those that `may` come back and oppose it, those with
-/// the largest first.
-/// Returns the number of rows that were put back. Collective.
+/// driven motion it takes the row with the largest `score` among those that oppose it, those with the largest first,
+/// and none with the score −∞. Returns the number of rows that were put back. Collective.
 ///
 /// # Errors
 /// Bodies that the load pushes away for ever: no row opposes a driven motion.
@@ -32,7 +31,7 @@ pub fn restore_coercivity(
     problem: &Problem,
     dual: &Dual,
     active: &mut [bool],
-    (score, may): (&dyn Fn(usize) -> f64, &dyn Fn(usize) -> bool),
+    score: &dyn Fn(usize) -> f64,
     load: &KernelLoad,
     tuning: &Tuning,
 ) -> Result<usize> {
@@ -59,7 +58,8 @@ pub fn restore_coercivity(
         // For each motion the best row on this rank.
         let mut best: Vec<Option<(f64, usize)>> = vec![None; driven.len()];
         let candidates = jump.rows_between_bodies();
-        for i in candidates.filter(|&i| jump.is_candidate(i) && !active[i] && may(i)) {
+        let candidates = candidates.filter(|&i| score(i) > f64::NEG_INFINITY);
+        for i in candidates.filter(|&i| jump.is_candidate(i) && !active[i]) {
             let (columns, values) = g.entries(i);
             let size: f64 = values.iter().map(|x| x.abs()).sum();
             for (d, work) in by_column.works(columns, values) {

@@ -35,8 +35,8 @@ impl<'a> Repairs<'a> {
         }
     }
 
-    /// Puts rows into `active` so that the load drives no body away, those with the largest `score` first. Returns
-    /// their number. Collective.
+    /// Puts rows into `active` so that the load drives no body away, those with the largest `score` first, none
+    /// with the score −∞. Returns their number. Collective.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.
@@ -47,23 +47,8 @@ impl<'a> Repairs<'a> {
         score: &dyn Fn(usize) -> f64,
         load: &KernelLoad,
     ) -> Result<usize> {
-        self.hold_by(dual, active, score, load, &|_| true)
-    }
-
-    /// [`hold`](Self::hold) by rows for which `may` is true. Collective.
-    ///
-    /// # Errors
-    /// Bodies that the load pushes away for ever.
-    pub fn hold_by(
-        &self,
-        dual: &Dual,
-        active: &mut [bool],
-        score: &dyn Fn(usize) -> f64,
-        load: &KernelLoad,
-        may: &dyn Fn(usize) -> bool,
-    ) -> Result<usize> {
         let problem = &self.method.problem;
-        held::restore_coercivity(problem, dual, active, (score, may), load, self.tuning)
+        held::restore_coercivity(problem, dual, active, score, load, self.tuning)
     }
 
     /// Moves bodies that nothing holds to where no row is violated, or as little as possible. Returns the gaps

@@ -10,6 +10,12 @@ pub struct Turn {
 }
 
 impl Turn {
+    /// The angle `by` and that of this turn together, as cosine and sine.
+    pub fn after(&self, [cos, sin]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.by;
+        [c * cos - s * sin, s * cos + c * sin]
+    }
+
     /// The values of both rows after it.
     pub fn of(&self, [a, b]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.by;

@@ -4,6 +4,7 @@ use super::loads::Loads;
 use crate::feti::jump::operator::Jump;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
+use crate::feti::projector::balance::KernelLoad;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::Result;
 use cholesky::lanes::LANES;
@@ -189,7 +190,7 @@ fn pushing(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
         let dual = method.dual();
         let load = match &load {
             Some(load) => load,
-            None => load.insert(given_loads(method, &dual, lambda)?.kernel),
+            None => load.insert(given_load(method, &dual, lambda)?),
         };
         let rows = dual.multipliers()?;
         rows.array_mut()?.copy_from_slice(&out);
@@ -199,14 +200,14 @@ fn pushing(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
     Ok(found.then_some(out))
 }
 
-/// The loads with the forces of nodes that slip. Collective.
-fn given_loads(method: &LinearMethod, dual: &Dual, lambda: &[f64]) -> Result<Loads> {
+/// The loads on floating bodies with the forces of nodes that slip. Collective.
+fn given_load(method: &LinearMethod, dual: &Dual, lambda: &[f64]) -> Result<KernelLoad> {
     let jump = &dual.stiffness.jump;
     let slips = |r: usize| jump.law[r].is_friction() && !jump.active[r];
     let given = |r: usize| if slips(r) { lambda[r] } else { 0.0 };
     let given: Vec<f64> = (0..lambda.len()).map(given).collect();
-    let f: Vec<&[f64]> = method.problem.local.iter().map(|s| &s.f[..]).collect();
-    Loads::new(&method.problem, dual).with_multipliers(dual, &f, &given)
+    let loads = Loads::new(&method.problem, dual);
+    Ok(loads.with_multipliers(&method.problem, dual, &given)?.1)
 }
 
 /// Gives dependent rows, some of which pull, other multipliers with the same forces, if there are some that push.

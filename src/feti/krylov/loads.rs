@@ -50,11 +50,17 @@ impl Loads {
         }
     }
 
-    /// These loads of `f` with multipliers of rows that do not hold, which load the bodies with −Bᵀ λ. Collective.
+    /// g and e of these loads of the problem with multipliers of rows that do not hold, which load the bodies with −Bᵀ
+    /// λ. Collective.
     ///
     /// # Errors
     /// PETSc's own.
-    pub fn with_multipliers(&self, dual: &Dual, f: &[&[f64]], lambda: &[f64]) -> Result<Loads> {
+    pub fn with_multipliers(
+        &self,
+        problem: &Problem,
+        dual: &Dual,
+        lambda: &[f64],
+    ) -> Result<(Vec<Vec<f64>>, KernelLoad)> {
         let stiffness = &dual.stiffness;
         let multipliers = dual.multipliers()?;
         multipliers.array_mut()?.copy_from_slice(lambda);
@@ -63,16 +69,12 @@ impl Loads {
         let mut g = self.g.clone();
         for (j, g) in g.iter_mut().enumerate() {
             let mut v = vec![0.0; g.len()];
-            let columns = stiffness.jump.columns.of(j);
-            columns.b_transpose_all(&ghost, &mut v);
+            stiffness.jump.columns.of(j).b_transpose_all(&ghost, &mut v);
             g.iter_mut().zip(&v).for_each(|(g, v)| *g -= v);
         }
-        Ok(Loads {
-            interiors: self.interiors.clone(),
-            kernel: dual.natural.kernel_load(dual.comm(), f, &g),
-            jumps: self.jumps.clone(),
-            g,
-        })
+        let f: Vec<&[f64]> = problem.local.iter().map(|s| &s.f[..]).collect();
+        let kernel = dual.natural.kernel_load(dual.comm(), &f, &g);
+        Ok((g, kernel))
     }
 
     /// K_II⁻¹ f_I of local subdomain `j`, zero on Γ.

@@ -3,6 +3,7 @@
 use super::areas::Areas;
 use super::at_node::AtNode;
 use super::laws::{NodeFriction, NodeLaw};
+use super::row::Row;
 use crate::checked::Scene;
 use base::{Error, Result};
 use fetifeti::problem::FrictionNode;
@@ -37,11 +38,11 @@ impl Scene {
         laws.filter_map(|law| Some((law.normal, law.friction.as_ref()?)))
     }
 
-    /// The area to which the stresses at a row belong.
-    fn area(&self, row: usize, areas: &mut Areas<'_>) -> f64 {
-        let row = &self.rows[row];
+    /// The area to which the stresses at a row in contact belong; 0 where there are none.
+    pub(super) fn area(&self, row: &Row, areas: &mut Areas<'_>) -> f64 {
         match &row.combination {
-            Some(combination) => combination.area,
+            Some(c) if row.law.is_decided() && self.has_pressure() => c.area,
+            Some(_) => 0.0,
             None => {
                 let carrier = row.members[self.carrier(row.source)];
                 carrier.map_or(0.0, |c| areas.at(row.source, c))
@@ -58,7 +59,7 @@ impl Scene {
         let place = self.places(owns);
         let mut next = place.len();
         for law in self.laws_of(owns) {
-            let area = self.area(law.normal, &mut areas);
+            let area = self.area(&self.rows[law.normal], &mut areas);
             rows[place[&law.normal]].compliance = law.compliance(area);
             let Some(friction) = &law.friction else {
                 continue;
@@ -77,10 +78,10 @@ impl Scene {
     pub(crate) fn check_areas(&self, owns: &dyn Fn(usize) -> bool) -> Result<()> {
         let mut areas = Areas::new(self);
         for law in self.laws_of(owns).filter(|law| law.needs_area()) {
-            if self.area(law.normal, &mut areas) > 0.0 {
+            let row = &self.rows[law.normal];
+            if self.area(row, &mut areas) > 0.0 {
                 continue;
             }
-            let row = &self.rows[law.normal];
             let node = row.members[0].expect("a contact has a first node");
             let body = &self.bodies[node.body].spec;
             return Err(Error::input(format!(
@@ -110,7 +111,7 @@ impl Scene {
         let node = |(normal, friction): (usize, &NodeFriction)| {
             let tangential = next..next + friction.tangential.len();
             next = tangential.end;
-            let bound = friction.bound(self.area(normal, &mut areas));
+            let bound = friction.bound(self.area(&self.rows[normal], &mut areas));
             FrictionNode::new(place[&normal], tangential.collect(), bound)
         };
         self.friction_of(owns).map(node).collect()

@@ -123,11 +123,7 @@ impl Scene {
         let Some(carrier) = row.members[self.carrier(row.source)] else {
             return label;
         };
-        let area = match &row.combination {
-            None => areas.at(row.source, carrier),
-            Some(c) if row.law.is_inequality() && self.has_pressure() => c.area,
-            Some(_) => 0.0,
-        };
+        let area = self.area(row, areas);
         label
             .at(carrier.position(&self.bodies), self.t(row.source, row.node))
             .along(row.direction, area)

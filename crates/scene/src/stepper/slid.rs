@@ -8,6 +8,7 @@ use crate::checked::Scene;
 use base::Result;
 use fetifeti::solution::State;
 use fetifeti::{FetiFeti, Solution};
+use parallel::exchange::any;
 
 /// Adds A to the right-hand sides of the tangential rows, in the order in which a rank provides its rows.
 pub(super) fn add(solver: &FetiFeti, state: Option<&State>, gaps: &mut [f64]) {
@@ -19,7 +20,7 @@ pub(super) fn add(solver: &FetiFeti, state: Option<&State>, gaps: &mut [f64]) {
     gaps.iter_mut().zip(slid).for_each(|(c, a)| *c += a);
 }
 
-/// A after a load step, on the owned rows; empty without friction on this rank.
+/// A after a load step, on the owned rows; empty without friction on any rank. Collective.
 ///
 /// # Errors
 /// As [`Scene::gaps`].
@@ -29,7 +30,8 @@ pub(super) fn after(
     (solver, solution): (&FetiFeti, &Solution),
     (step, before): (usize, Option<&State>),
 ) -> Result<Vec<f64>> {
-    if !scene.has_friction() {
+    // A rank may have read a part of the scene without friction.
+    if !any(solver.session().comm(), scene.has_friction()) {
         return Ok(Vec::new());
     }
     let drags = scene.drags(owns, step)?;
