@@ -64,9 +64,7 @@ pub(crate) fn collect(
 ) -> Result<Vec<NodeLaw>> {
     let mut out = Vec::new();
     for (normal, row) in rows.iter().enumerate() {
-        let mut entries = row.limits().iter().filter_map(|l| l.entry);
-        let Some((entry, law)) = entries.find_map(|entry| Some((entry, of_entry(spec, entry)?)))
-        else {
+        let Some((entry, law)) = of_row(spec, bodies, row)? else {
             continue;
         };
         let place = Place {
@@ -100,6 +98,36 @@ pub(crate) fn collect(
     Ok(out)
 }
 
+/// The law of a row, with one of the entries that select it; `None` for hard contact without friction.
+///
+/// # Errors
+/// [`ErrorKind::Input`](base::ErrorKind::Input) for entries with different laws.
+fn of_row<'s>(
+    spec: &'s SceneSpec,
+    bodies: &[Body],
+    row: &Row,
+) -> Result<Option<(EntryId, &'s ContactLaw)>> {
+    let mut entries = row.limits().iter().filter_map(|l| l.entry);
+    let Some(first) = entries.next() else {
+        return Ok(None);
+    };
+    let law = of_entry(spec, first);
+    if let Some(other) = entries.find(|&other| of_entry(spec, other) != law) {
+        let node = row.members[0].expect("a contact has a first node");
+        let [here, there] = [first, other].map(|entry| spec.location_of(entry));
+        return Err(Error::input(format!(
+            "{} and {} both select the node at {} of body `{}` and have different laws (friction, stiffness), \
+             expected one law at a node",
+            first.named(Some(here)),
+            other.named(Some(there)),
+            node.spot(bodies),
+            bodies[node.body].spec.name
+        ))
+        .at(there));
+    }
+    Ok(law.map(|law| (first, law)))
+}
+
 /// The law of an entry, if it is not hard contact without friction.
 fn of_entry(spec: &SceneSpec, entry: EntryId) -> Option<&ContactLaw> {
     let law = match entry {
@@ -123,10 +151,7 @@ impl Place<'_> {
     /// Whether friction is solved here.
     fn check(&self) -> Result<()> {
         let update = self.spec.steps.as_ref().is_some_and(|s| s.update);
-        let solid = self.bodies[0].mesh().dim() == 3;
-        let why = if solid && self.row.combination.is_some() {
-            "in space between sides whose nodes do not match, expected nodes that lie opposite each other"
-        } else if update {
+        let why = if update {
             "with `update` in [steps], expected contacts that stay as they are"
         } else {
             return Ok(());
