@@ -171,20 +171,14 @@ impl Block {
         }
     }
 
-    /// Whether rows can be turned: the block is one of a point.
-    pub fn can_turn(&self) -> bool {
-        matches!(self.form, BlockForm::Dense(_))
-    }
-
-    /// Turns two rows; B_D is that of before.
-    ///
-    /// # Panics
-    /// If the block is coupled.
+    /// Turns two rows of this rank; B_D is that of before.
     pub fn turn(&mut self, turn: &Turn) {
-        let BlockForm::Dense(b) = &mut self.form else {
-            panic!("rows of a coupled block are not turned");
+        let rows = turn.rows.map(|r| r - self.rows.start);
+        let b = match &mut self.form {
+            BlockForm::Dense(b) => b,
+            BlockForm::Coupled(coupled) => return coupled.turn(&Turn { rows, ..*turn }),
         };
-        let [first, second] = turn.rows.map(|r| r - self.rows.start);
+        let [first, second] = rows;
         for j in 0..b.cols {
             let turned = turn.of([b.get(first, j), b.get(second, j)]);
             b.set(first, j, turned[0]);
@@ -290,6 +284,17 @@ fn copies_of<'a>(dofs: &[Dof], copies: &'a [Copy], dof: usize) -> &'a [Copy] {
     &copies[start as usize..dofs[dof].end as usize]
 }
 
+/// The other tangential row of each one in space.
+fn partners(problem: &Problem) -> FxHashMap<usize, usize> {
+    let mut out = FxHashMap::default();
+    for node in &problem.friction {
+        if let [a, b] = node.tangential[..] {
+            out.extend([(a, b), (b, a)]);
+        }
+    }
+    out
+}
+
 /// The values at these places.
 fn pick<T: Clone>(values: &[T], at: &[usize]) -> Vec<T> {
     at.iter().map(|&i| values[i].clone()).collect()
@@ -306,6 +311,7 @@ pub(crate) fn collect(
     order.sort_by_key(|&r| problem.rows[r].block);
     let mut blocks = Vec::new();
     let (mut start, mut slots) = (first, 0);
+    let partners = partners(problem);
     for rows in order.chunk_by(|&a, &b| problem.rows[a].block == problem.rows[b].block) {
         let terms = rows.iter().flat_map(|&r| &problem.rows[r].terms);
         let dofs = distinct(terms.map(|t| t.0));
@@ -317,7 +323,14 @@ pub(crate) fn collect(
         let form = if rows.len() > many {
             let row = |&r: &usize| {
                 let terms = problem.rows[r].terms.iter();
-                terms.map(|t| (place(&t.0) as u32, t.1)).collect()
+                let own = terms.map(|t| (place(&t.0) as u32, t.1));
+                // A row that may be turned has the dofs of its partner, too.
+                let partner = partners.get(&r).map(|&p| &problem.rows[p].terms);
+                let zeros = partner
+                    .into_iter()
+                    .flatten()
+                    .map(|t| (place(&t.0) as u32, 0.0));
+                own.chain(zeros).collect()
             };
             let rows: Vec<_> = rows.iter().map(row).collect();
             let scaling: Vec<f64> = of_block.iter().map(|dof| dof.scaling).collect();

@@ -38,6 +38,49 @@ impl Block {
     }
 }
 
+impl Block {
+    /// The rows in `later` that depend on those in `on` and on earlier ones in `later` that are `rigid`. Each is given
+    /// with the part of its length outside their span up to which it depends on them. `on` and `rigid` have an entry per
+    /// row of the block; none of the `later` rows is on.
+    pub fn followers(&self, on: &[bool], later: &[(usize, f64)], rigid: &[bool]) -> Vec<usize> {
+        let mut all = on.to_vec();
+        later.iter().for_each(|r| all[r.0] = true);
+        let Some((rows, b)) = self.dependent(&all) else {
+            return Vec::new();
+        };
+        let place = |r: usize| rows.binary_search(&r).ok();
+        let first = (0..rows.len()).filter(|&i| on[rows[i]]).map(|i| (i, 0.0));
+        let then = later
+            .iter()
+            .filter_map(|&(r, near)| Some((place(r)?, near)));
+        let mut span: Vec<Vec<f64>> = Vec::new();
+        let mut out = Vec::new();
+        for (i, near) in first.chain(then) {
+            let mut row: Vec<f64> = (0..b.cols).map(|j| b.get(i, j)).collect();
+            let size = norm(&row);
+            for _ in 0..2 {
+                for q in &span {
+                    let along: f64 = q.iter().zip(&row).map(|(q, v)| q * v).sum();
+                    row.iter_mut().zip(q).for_each(|(v, q)| *v -= along * q);
+                }
+            }
+            let rest = norm(&row);
+            let r = rows[i];
+            if !on[r] && rest <= near * size {
+                out.push(r);
+            } else if rigid[r] && rest > f64::EPSILON * size {
+                row.iter_mut().for_each(|v| *v /= rest);
+                span.push(row);
+            }
+        }
+        out
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
 /// B B⁺ c over the active rows of B, the nearest right-hand side that they can satisfy together; `c` on the others.
 pub fn consistent(b: &Dense, active: &[bool], c: &[f64]) -> Vec<f64> {
     let mut out = c.to_vec();

@@ -9,12 +9,6 @@ use super::turn::Turn;
 use parallel::exchange::exchange;
 
 impl Jump {
-    /// Whether the rows of a block can be turned: it is one of a point.
-    pub fn can_turn(&self, row: usize) -> bool {
-        let block = self.block_of[row - self.n_owned_local];
-        self.blocks[block as usize].can_turn()
-    }
-
     /// Turns rows of this rank, with their right-hand sides and B_D. Collective.
     pub fn turn(&mut self, comm: &SimpleCommunicator, turns: &[Turn]) {
         let mut outgoing: Vec<Vec<JumpBlockEntry>> = (0..comm.size()).map(|_| Vec::new()).collect();
@@ -30,13 +24,17 @@ impl Jump {
         }
         blocks.sort_unstable();
         blocks.dedup();
+        let mut rows: Vec<usize> = turns.iter().flat_map(|t| t.rows).collect();
+        rows.sort_unstable();
         for &k in &blocks {
             let block = &mut self.blocks[k as usize];
             let active = &self.active[block.rows.clone()];
             let mut send = |entry: JumpBlockEntry| {
                 outgoing[self.locations.rank(entry.subdomain)].push(entry);
             };
-            block.hold(self.first, |_| true, active, &mut self.known, &mut send);
+            let start = block.rows.start;
+            let turned = |r| rows.binary_search(&(start + r)).is_ok();
+            block.hold(self.first, turned, active, &mut self.known, &mut send);
         }
         self.change(exchange(comm, outgoing));
     }

@@ -50,22 +50,20 @@ impl ByDofs {
         let n_dofs = b.columns.n();
         let rows = || (0..kept.len()).filter(|&r| kept[r]);
         let mut users = vec![0u32; n_dofs];
-        for &j in rows().flat_map(|r| b.rows.row(r).0) {
-            users[j as usize] += 1;
+        for r in rows() {
+            entries_of(b, r).for_each(|(j, _)| users[j as usize] += 1);
         }
         let has_own = |&r: &usize| {
-            let (col, val) = b.rows.row(r);
-            let entries = || col.iter().zip(val.iter().map(|v| v.abs()));
+            let entries = || entries_of(b, r).map(|(j, v)| (j, v.abs()));
             let largest = entries().fold(0.0f64, |a, e| a.max(e.1));
-            entries().any(|(&j, v)| users[j as usize] == 1 && v > FAINT * largest)
+            entries().any(|(j, v)| users[j as usize] == 1 && v > FAINT * largest)
         };
         let (with_own, others): (Vec<usize>, Vec<usize>) = rows().partition(has_own);
         // The place of each dof among the shared ones.
         let mut place = vec![u32::MAX; n_dofs];
-        let own_of = |r: usize| b.rows.row(r).0.iter().filter(|&&j| users[j as usize] == 1);
         let mut is_own = vec![false; n_dofs];
-        for &j in with_own.iter().flat_map(|&r| own_of(r)) {
-            is_own[j as usize] = true;
+        for (j, _) in with_own.iter().flat_map(|&r| entries_of(b, r)) {
+            is_own[j as usize] |= users[j as usize] == 1;
         }
         let is_shared = |&j: &usize| users[j] > 0 && !is_own[j];
         let shared: Vec<u32> = (0..n_dofs).filter(is_shared).map(|j| j as u32).collect();
@@ -74,11 +72,9 @@ impl ByDofs {
         }
         let part = |list: &[usize], of_own: bool| {
             let row = |&r: &usize| {
-                let (col, val) = b.rows.row(r);
-                let entries = col.iter().zip(val);
-                let chosen = entries.filter(|e| is_own[*e.0 as usize] == of_own);
+                let chosen = entries_of(b, r).filter(|e| is_own[e.0 as usize] == of_own);
                 let at = |j: u32| if of_own { j } else { place[j as usize] };
-                chosen.map(|(&j, v)| (at(j), *v)).collect()
+                chosen.map(|(j, v)| (at(j), v)).collect()
             };
             compressed(&list.iter().map(row).collect::<Vec<Vec<_>>>())
         };
@@ -180,6 +176,13 @@ impl ByDofs {
     fn free(&self) -> usize {
         self.shared.len() - self.others.len()
     }
+}
+
+/// The dofs of row `r` with their coefficients.
+fn entries_of(b: &JumpMatrices, r: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+    let (col, val) = b.rows.row(r);
+    let entries = col.iter().copied().zip(val.iter().copied());
+    entries.filter(|e| e.1 != 0.0)
 }
 
 /// [M; I] T.

@@ -88,12 +88,11 @@ impl Dependencies {
 fn peeled(b: &JumpMatrices, on: &[bool]) -> Vec<bool> {
     let JumpMatrices { rows, columns } = b;
     let mut held = on.to_vec();
-    let users = |j| columns.row(j).0.iter().filter(|&&r| on[r as usize]).count();
+    let users = |j| b.users(j).filter(|&r| on[r]).count();
     let mut users: Vec<usize> = (0..columns.n()).map(users).collect();
     let mut queue: Vec<usize> = (0..users.len()).filter(|&j| users[j] == 1).collect();
     while let Some(j) = queue.pop() {
-        let mut those = columns.row(j).0.iter().map(|&r| r as usize);
-        let Some(r) = those.find(|&r| held[r]) else {
+        let Some(r) = b.users(j).find(|&r| held[r]) else {
             continue;
         };
         let largest = rows.row(r).1.iter().fold(0.0f64, |a, v| a.max(v.abs()));
@@ -101,7 +100,8 @@ fn peeled(b: &JumpMatrices, on: &[bool]) -> Vec<bool> {
             continue;
         }
         held[r] = false;
-        for &k in rows.row(r).0 {
+        let (dofs, values) = rows.row(r);
+        for (&k, _) in dofs.iter().zip(values).filter(|e| *e.1 != 0.0) {
             let k = k as usize;
             users[k] -= 1;
             if users[k] == 1 {

@@ -12,6 +12,7 @@ mod pattern;
 mod rank;
 pub mod slots;
 
+use crate::feti::jump::turn::Turn;
 use base::linalg::dense::Dense;
 use base::linalg::sorted::distinct;
 use by_dofs::ByDofs;
@@ -93,6 +94,11 @@ impl Coupled {
             let by_rows = self.by_rows.get_or_insert_with(new);
             by_rows.hold(&self.b, &kept);
         }
+    }
+
+    /// Turns two rows, which have the dofs of both; B_D is that of before.
+    pub fn turn(&mut self, turn: &Turn) {
+        self.b.turn(turn);
     }
 
     /// v ← B_Dᵀ λ.
@@ -206,8 +212,8 @@ fn is_steep(b: &JumpMatrices, weights: &[f64], r: usize) -> bool {
     // Σ coefficient² / D over dofs that the row has for itself, and over the others.
     let mut softness = [0.0; 2];
     let mut ends = [f64::INFINITY, 0.0f64];
-    for (&j, v) in col.iter().zip(val) {
-        let (is_shared, weight) = (b.columns.row(j as usize).0.len() > 1, weights[j as usize]);
+    for (&j, v) in col.iter().zip(val).filter(|e| *e.1 != 0.0) {
+        let (is_shared, weight) = (b.users(j as usize).nth(1).is_some(), weights[j as usize]);
         softness[usize::from(is_shared)] += v * v / weight;
         ends = [ends[0].min(weight), ends[1].max(weight)];
     }

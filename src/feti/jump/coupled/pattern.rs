@@ -1,5 +1,6 @@
 //! Sparse matrices of a coupled block: B by rows and by columns, and products B W Bᵀ with a diagonal matrix W.
 
+use crate::feti::jump::turn::Turn;
 use base::linalg::csr::Csr;
 
 /// An entry below this fraction of the largest of its row does not make the row independent by itself.
@@ -12,6 +13,37 @@ pub struct JumpMatrices {
     pub rows: Csr,
     /// Bᵀ.
     pub columns: Csr,
+}
+
+impl JumpMatrices {
+    /// The rows that dof `j` is in. Rows that may be turned have zeros for dofs that others of their node are in.
+    pub fn users(&self, j: usize) -> impl Iterator<Item = usize> + '_ {
+        let (rows, values) = self.columns.row(j);
+        let entries = rows.iter().zip(values);
+        entries.filter(|e| *e.1 != 0.0).map(|e| *e.0 as usize)
+    }
+
+    /// Turns two rows, which have the dofs of both.
+    pub fn turn(&mut self, turn: &Turn) {
+        let [a, b] = turn.rows;
+        let dofs = self.rows.row(a).0.to_vec();
+        debug_assert_eq!(dofs, self.rows.row(b).0);
+        for j in dofs {
+            let j = j as usize;
+            let turned = turn.of([self.rows.get(a, j), self.rows.get(b, j)]);
+            for (r, value) in turn.rows.into_iter().zip(turned) {
+                set(&mut self.rows, r, j, value);
+                set(&mut self.columns, j, r, value);
+            }
+        }
+    }
+}
+
+/// Changes an entry.
+fn set(matrix: &mut Csr, row: usize, col: usize, value: f64) {
+    let range = matrix.row_ptr[row]..matrix.row_ptr[row + 1];
+    let found = matrix.col[range.clone()].binary_search(&(col as u32));
+    matrix.val[range][found.expect("an entry of the pattern")] = value;
 }
 
 /// Rows of (column, value), repeated columns added up.

@@ -314,3 +314,54 @@ fn rows_of_a_fine_side_depend_on_each_other_to_rounding() {
     let missed = distance(&product(&b, &v), &wanted);
     assert!(missed < 1e-12, "{missed:e}");
 }
+
+/// Two rows that are turned together have the B_D of turned rows, and turning them back gives the old one.
+#[test]
+fn turned_rows_scale_as_in_dense_blocks() {
+    let (n, m) = (60, 30);
+    let (first, of_first) = between_sides(n, m, [1.0, 2.0]);
+    // The second row of each pair is along another component: its dofs come after those of the first ones.
+    let shift = (n + m) as u32;
+    let mut rows: Rows = Vec::new();
+    for row in &first {
+        let second: Vec<(u32, f64)> = row.iter().map(|&(j, v)| (j + shift, v)).collect();
+        let zeros = |of: &[(u32, f64)]| of.iter().map(|e| (e.0, 0.0)).collect::<Vec<_>>();
+        rows.push([row.clone(), zeros(&second)].concat());
+        rows.push([second.clone(), zeros(row)].concat());
+    }
+    let weights = [of_first.clone(), of_first].concat();
+    let turn = Turn {
+        rows: [8, 9],
+        by: [0.6, 0.8],
+    };
+    let mut turned = rows.clone();
+    for k in 0..rows[8].len() {
+        let j = rows[8][k].0;
+        let b = rows[9].iter().find(|e| e.0 == j).expect("a dof of both").1;
+        let [along, across] = turn.of([rows[8][k].1, b]);
+        turned[8][k].1 = along;
+        turned[9]
+            .iter_mut()
+            .find(|e| e.0 == j)
+            .expect("a dof of both")
+            .1 = across;
+    }
+    let mut active = vec![true; rows.len()];
+    active[8] = false;
+    let mut coupled = Coupled::new(&rows, &weights);
+    coupled.hold(&vec![true; rows.len()]);
+    coupled.turn(&turn);
+    coupled.hold(&active);
+    let bd = scaling::block(&dense(&turned, weights.len()), &weights, &active);
+    let lambda = multipliers(&active);
+    let (mut v, mut expected) = (vec![0.0; weights.len()], vec![0.0; weights.len()]);
+    coupled.lift(&lambda, &mut v);
+    bd.add_mul_transpose(&lambda, &mut expected);
+    assert!(
+        distance(&v, &expected) < 1e-12,
+        "{:.1e}",
+        distance(&v, &expected)
+    );
+    // Rows with zeros for the dofs of their partners depend on each other no more than without.
+    assert!(coupled.dependent(&vec![true; rows.len()]).is_empty());
+}
