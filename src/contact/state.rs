@@ -38,6 +38,19 @@ pub struct Step {
     pub seconds: f64,
 }
 
+impl Step {
+    /// This step as the end of one that has begun with `before`.
+    pub(super) fn continuing(self, before: &Step) -> Step {
+        Step {
+            entered: before.entered,
+            left: before.left,
+            iterations: before.iterations + self.iterations,
+            seconds: before.seconds + self.seconds,
+            ..self
+        }
+    }
+}
+
 /// The state of the outer loop, sufficient to continue it. Vectors are this rank's part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]

@@ -156,6 +156,8 @@ struct Tally {
     states: [usize; 3],
     /// Steps of each scene over those without friction.
     ratios: Vec<f64>,
+    /// Iterations likewise.
+    iterations: Vec<f64>,
     /// The largest distance of a multiplier, relative to the largest multiplier of its scene.
     force: f64,
 }
@@ -209,14 +211,18 @@ fn compare(ids: impl Iterator<Item = u64>) -> Tally {
             let free = solved(session, &(free.join("\n") + "\n"));
             let [with, without] = [&solution, &free].map(|s| s.steps.len() as f64);
             tally.ratios.push(with / without);
+            let [with, without] = [&solution, &free].map(|s| s.iterations as f64);
+            tally.iterations.push(with / without);
             tally.right += 1;
         }
         tally.ratios.sort_by(f64::total_cmp);
+        tally.iterations.sort_by(f64::total_cmp);
         let Tally { states, ratios, .. } = &tally;
         let [median, most] = [ratios.len() / 2, ratios.len() - 1].map(|k| ratios[k]);
+        let iterations = tally.iterations[tally.iterations.len() / 2];
         println!(
             "{} right (forces within {:.1e}), {} undecided, {} not solved; rows that stick, slip, are apart: \
-             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}",
+             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}; iterations {iterations:.2}",
             tally.right, tally.force, tally.undecided, tally.failed
         );
         tally

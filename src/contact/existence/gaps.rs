@@ -17,7 +17,11 @@ use base::linalg::sorted::distinct;
 pub fn check(problem: &Problem, dual: &Dual, near: f64) -> Result<()> {
     let jump = &dual.stiffness.jump;
     for block in &jump.blocks {
-        let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
+        // A node with friction may slip: its tangential rows contradict nothing.
+        let candidate = |r: &usize| {
+            let r = block.rows.start + r;
+            jump.is_candidate(r) && !jump.law[r].is_friction()
+        };
         let rows = || (0..block.rows.len()).filter(candidate);
         let gap = |r: usize| jump.gap[block.rows.start + r];
         let equation = |r: usize| !jump.law[block.rows.start + r].is_inequality();

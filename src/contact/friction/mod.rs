@@ -8,21 +8,25 @@
 //! A step solves the equations of these states by the linear method: nothing is factored again, and the operators stay
 //! symmetric. Normal rows follow the rule of the active set in the same step.
 
+mod judged;
+mod mixing;
 mod node;
+mod pose;
 pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
 use super::modes::{CompliantRows, TurnedRows};
 use super::settings::ContactSettings;
-use super::state::{State, Step};
+use super::state::{ActiveSetProgress, State, Step};
 use super::strategy::{Proposal, Strategy};
-use crate::feti::jump::operator::Jump;
-use crate::feti::jump::turn::Turn;
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
-use crate::{Error, Result};
+use crate::Result;
+pub use judged::error;
+use judged::nodes;
+use mixing::Mixing;
 use node::{Node, NodeState};
 use parallel::exchange::{any, max_all, sum_all};
 
@@ -41,6 +45,8 @@ pub struct Friction<'a> {
     /// The loads of the problem.
     loads: Loads,
     nodes: Vec<Node>,
+    mixing: Mixing,
+    progress: ActiveSetProgress,
     /// Springs across slips in space, and rows along them.
     springs: CompliantRows<'a>,
     turned: TurnedRows<'a>,
@@ -58,18 +64,7 @@ impl<'a> Friction<'a> {
         let cold = State::cold(&method.dual().stiffness.jump);
         let state = start.unwrap_or(&cold);
         let nodes = nodes(method, &state.lambda, &state.active)?;
-        let dual = method.dual();
-        let jump = &dual.stiffness.jump;
-        let turns = |node: &Node| node.tangential.len() < 2 || jump.can_turn(node.normal);
-        if any(method.session.comm(), !nodes.iter().all(turns)) {
-            return Err(Error::input(
-                "friction in space at nodes that equations or rows of other nodes lead to, expected nodes with rows of \
-                 their own",
-            ));
-        }
-        drop(dual);
-        let mut inner = ActiveSet::new(method, settings, start)?;
-        inner.finer = settings.tuning.friction.finer;
+        let inner = ActiveSet::new(method, settings, start)?;
         let loads = Loads::new(&method.problem, &method.dual());
         Ok(Friction {
             method,
@@ -77,139 +72,113 @@ impl<'a> Friction<'a> {
             inner,
             loads,
             nodes,
+            mixing: Mixing::default(),
+            progress: ActiveSetProgress::default(),
             springs: CompliantRows::of(method),
             turned: TurnedRows::of(method),
             slides: 0,
         })
     }
 
-    /// Hands the states of the nodes to the equations.
-    fn pose(&mut self) -> Result<()> {
-        self.turn()?;
-        let given = self.given();
-        let mut springs = vec![0.0; given.len()];
-        for node in &self.nodes {
-            for (&t, holds) in node.tangential.iter().zip(node.holds()) {
-                self.inner.state.active[t] = holds;
-            }
-            if let [_, across] = node.tangential[..] {
-                springs[across] = node.across();
-            }
-        }
-        self.soften(springs);
-        self.method.system.set_given_multipliers(given.clone());
-        self.load(&given)?;
-        self.inner.renewed();
-        Ok(())
+    /// The bounds g of the nodes that slip; 0 for the others, whose forces do not depend on g.
+    fn bounds(&self) -> Vec<f64> {
+        self.nodes.iter().map(Node::slipping).collect()
     }
 
-    /// Turns the rows of nodes that slip along their slips. Collective.
-    fn turn(&mut self) -> Result<()> {
-        let turns: Vec<Turn> = self.nodes.iter_mut().filter_map(Node::turn).collect();
-        self.turned.turn(&turns);
-        self.follow(&turns)
+    /// The size of slips that say nothing: that of jumps which the step has left on rows that hold. Collective.
+    fn nothing(&self) -> Result<f64> {
+        let dual = self.method.dual();
+        let jump = &dual.stiffness.jump;
+        let rows = jump.rows_between_bodies().filter(|&r| self.inner.held[r]);
+        let left = rows.map(|r| (self.inner.gaps[r] + jump.gap[r] - jump.held[r]).abs());
+        let mut largest = [left.fold(0.0, f64::max)];
+        max_all(self.method.session.comm(), &mut largest);
+        let (tuning, rtol) = (&self.settings.tuning, self.method.ksp.tolerances()?.0);
+        Ok(tuning.friction.nothing * largest[0] + tuning.friction.even * rtol * self.inner.length)
     }
 
-    /// Turns the multipliers of the loop along with the rows.
-    fn follow(&self, turns: &[Turn]) -> Result<()> {
-        let mut lambda = self.inner.at.lambda.array_mut()?;
-        for turn in turns {
-            let [a, b] = turn.rows;
-            [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
-        }
-        Ok(())
-    }
-
-    /// Puts springs into rows, beside the compliance that they have of themselves. Collective.
-    fn soften(&mut self, springs: Vec<f64>) {
-        let some = any(self.method.session.comm(), springs.iter().any(|s| *s > 0.0));
-        let was = !self.inner.springs.is_empty();
-        if !some && !was {
-            return;
-        }
-        let own = self.method.dual().stiffness.jump.compliance.clone();
-        if some {
-            let own = own.iter().chain(std::iter::repeat(&0.0));
-            let all: Vec<f64> = springs.iter().zip(own).map(|(s, c)| s + c).collect();
-            self.springs.soften(&all);
-            self.inner.springs = springs;
-        } else {
-            self.springs.rigid();
-            self.inner.springs = Vec::new();
-        }
-    }
-
-    /// In space, turns the rows back. Nodes that slip then have given forces alone, those across their slips included.
-    /// Collective.
-    fn rest(&mut self) -> Result<()> {
-        let method = self.method;
-        let in_space = self.nodes.iter().any(|n| n.tangential.len() > 1);
-        if !any(method.session.comm(), in_space) {
-            return Ok(());
-        }
-        let mut active = method.dual().stiffness.jump.active.clone();
-        for node in &self.nodes {
-            let sticks = node.tangential.iter().all(|&t| active[t]);
-            node.tangential.iter().for_each(|&t| active[t] = sticks);
-        }
-        let turns = self.turned.back();
-        self.follow(&turns)?;
-        self.soften(vec![0.0; active.len()]);
-        let lambda = self.inner.at.lambda.to_vec()?;
-        let mut given = vec![0.0; active.len()];
-        for &t in self.nodes.iter().flat_map(|n| &n.tangential) {
-            given[t] = if active[t] { 0.0 } else { lambda[t] };
-        }
-        method.system.set_given_multipliers(given.clone());
-        method.set_active(&active)?;
-        self.load(&given)?;
-        (self.inner.state.active, self.inner.state.lambda) = (active, lambda);
-        Ok(())
-    }
-
-    /// The given multipliers on the owned rows.
-    fn given(&self) -> Vec<f64> {
-        let mut given = vec![0.0; self.method.dual().stiffness.jump.n_owned];
-        for node in &self.nodes {
-            let force = node.on_rows(node.force());
-            for (&t, f) in node.tangential.iter().zip(force) {
-                given[t] = f;
-            }
-        }
-        given
-    }
-
-    /// Hands the loads with given multipliers to the equations. Collective.
-    fn load(&mut self, given: &[f64]) -> Result<()> {
-        let (problem, dual) = (&self.method.problem, &self.method.dual());
-        let (g, kernel) = self.loads.with_multipliers(problem, dual, given)?;
-        let loads = &mut self.inner.at.loads;
-        (loads.g, loads.kernel) = (g, kernel);
-        Ok(())
-    }
-
-    /// Takes the nodes to the states that follow from the step. Returns the number of flips and the largest change of a
-    /// force over all ranks, relative to the largest force of a row. Collective.
-    fn update(&mut self) -> Result<(usize, f64)> {
-        let lambda = &self.inner.state.lambda;
+    /// Takes the nodes to the states that follow from the step, in which the normal rows stay or not. Returns the number
+    /// of flips and the largest change of a force over all ranks, relative to the largest force of a row. Collective.
+    fn update(&mut self, stays: bool) -> Result<(usize, f64)> {
+        let nothing = self.nothing()?;
+        let comm = self.method.session.comm();
+        let (before, force) = (self.bounds(), self.largest_force());
         let step = node::Step {
-            lambda,
+            lambda: &self.inner.state.lambda,
             gaps: &self.inner.gaps,
             active: &self.inner.state.active,
+            nothing,
         };
-        let (mut flips, mut moves) = ([0.0], 0.0f64);
+        let (mut flips, mut moves) = ([0.0], [0.0f64]);
         for node in &mut self.nodes {
             let change = node.update(&step);
             flips[0] += f64::from(u8::from(change.flips));
-            moves = moves.max(change.moves);
+            moves[0] = moves[0].max(change.moves);
         }
-        let comm = self.method.session.comm();
         sum_all(comm, &mut flips);
-        let mut largest = [moves, lambda.iter().fold(0.0, |a, l| a.max(l.abs()))];
-        max_all(comm, &mut largest);
-        let [moves, force] = largest;
-        let moves = if force > 0.0 { moves / force } else { 0.0 };
-        Ok((flips[0] as usize, moves))
+        max_all(comm, &mut moves);
+        if flips[0] == 0.0 && stays {
+            let given_way = self
+                .nodes
+                .iter_mut()
+                .filter_map(|n| n.gives_way(&step).then_some(1.0));
+            flips[0] = given_way.sum();
+            sum_all(comm, &mut flips);
+        }
+        if flips[0] > 0.0 || !stays {
+            self.mixing.restart();
+        } else {
+            self.mix(before, self.bounds());
+        }
+        Ok((flips[0] as usize, moves[0] / force))
+    }
+
+    /// The bounds that follow from the step for the nodes that slip; 0 for the others.
+    fn following(&self) -> Vec<f64> {
+        let lambda = &self.inner.state.lambda;
+        self.nodes.iter().map(|n| n.following(lambda)).collect()
+    }
+
+    /// The largest change of a force that slipping nodes have yet to make, relative to the largest force of a row.
+    /// Collective.
+    fn unrest(&self) -> f64 {
+        let pairs = self.following().into_iter().zip(self.bounds());
+        let mut moves = [pairs.fold(0.0f64, |a, (next, g)| a.max((next - g).abs()))];
+        max_all(self.method.session.comm(), &mut moves);
+        moves[0] / self.largest_force()
+    }
+
+    /// Gives slipping nodes the forces that follow from the step, and lets all nodes and rows stay in their states.
+    /// Collective.
+    fn renew(&mut self) {
+        let mapped = self.following();
+        self.mix(self.bounds(), mapped);
+        self.inner.state.active.clone_from(&self.inner.state.before);
+        self.inner.tight = false;
+    }
+
+    /// Mixes bounds and those that follow from them. Collective.
+    fn mix(&mut self, before: Vec<f64>, mapped: Vec<f64>) {
+        let (comm, depth) = (
+            self.method.session.comm(),
+            self.settings.tuning.friction.mixed,
+        );
+        let mixed = self.mixing.mix(comm, depth, before, &mapped);
+        for (node, g) in self.nodes.iter_mut().zip(mixed) {
+            node.g = g.max(0.0);
+        }
+    }
+
+    /// The largest force of a row; 1 if there is none. Collective.
+    fn largest_force(&self) -> f64 {
+        let lambda = self.inner.state.lambda.iter();
+        let mut largest = [lambda.fold(0.0f64, |a, l| a.max(l.abs()))];
+        max_all(self.method.session.comm(), &mut largest);
+        if largest[0] > 0.0 {
+            largest[0]
+        } else {
+            1.0
+        }
     }
 
     /// Lets nodes stick where slipping ones leave a body loose that the load drives. Returns whether some had to.
@@ -261,25 +230,57 @@ impl Strategy<DualCourse> for Friction<'_> {
         &self.inner.state
     }
 
+    /// The equations of one set of states, again with the forces of friction that follow from their multipliers until
+    /// those are at rest, or a state changes.
     fn step(&mut self) -> Result<(Step, Proposal<Status>)> {
-        self.pose()?;
-        let (mut step, status, change) = self.inner.try_set()?;
-        if !status.converged() {
-            return Ok((step, Proposal::End(status)));
+        let tuning = &self.settings.tuning.friction;
+        let mut whole: Option<Step> = None;
+        for renewal in 0.. {
+            self.pose()?;
+            self.inner.finer = if renewal == 0 {
+                tuning.finer
+            } else {
+                tuning.renewed
+            };
+            let (mut step, status, change) = self.inner.try_set()?;
+            if let Some(before) = whole {
+                step = step.continuing(&before);
+                self.inner.state.steps -= 1;
+            }
+            if !status.converged() {
+                return Ok((step, Proposal::End(status)));
+            }
+            let state = &mut self.inner.state;
+            state.safeguarded = false;
+            let is_last = renewal == tuning.renewals;
+            // Where states wander, they are asked only once the forces are at rest: they are given, and mislead.
+            if self.progress.stalled(tuning.patience) && !is_last && self.unrest() > tuning.rest {
+                self.renew();
+                whole = Some(step);
+                continue;
+            }
+            let stays = !any(
+                self.method.session.comm(),
+                self.inner.state.active != self.inner.state.before,
+            );
+            let (flips, moves) = self.update(stays)?;
+            let restored = self.hold()?;
+            step.wrong += flips;
+            let settled = flips == 0 && !restored;
+            let rtol = self.method.ksp.tolerances()?.0;
+            let still = settled && moves <= tuning.still * rtol;
+            if still && change == ActiveSetChange::Solved {
+                return Ok((step, Proposal::End(status)));
+            }
+            // A step to the end is worth it where the forces of friction have come to rest.
+            self.inner.tight &= still;
+            if !(settled && stays) || is_last {
+                self.progress.note(step.wrong);
+                return Ok((step, Proposal::GoOn));
+            }
+            whole = Some(step);
         }
-        self.inner.state.safeguarded = false;
-        let (flips, moves) = self.update()?;
-        let restored = self.hold()?;
-        step.wrong += flips;
-        let settled = flips == 0 && !restored;
-        let rtol = self.method.ksp.tolerances()?.0;
-        let still = settled && moves <= self.settings.tuning.friction.still * rtol;
-        if still && change == ActiveSetChange::Solved {
-            return Ok((step, Proposal::End(status)));
-        }
-        // A step to the end is worth it where the forces of friction have come to rest.
-        self.inner.tight &= still;
-        Ok((step, Proposal::GoOn))
+        unreachable!("the last renewal ends a step")
     }
 
     fn finish(
@@ -291,38 +292,4 @@ impl Strategy<DualCourse> for Friction<'_> {
         self.rest()?;
         self.inner.end(steps, seconds, status)
     }
-}
-
-/// The nodes of this rank in the states that multipliers and a set say. Collective.
-fn nodes(method: &LinearMethod, lambda: &[f64], active: &[bool]) -> Result<Vec<Node>> {
-    let dual = method.dual();
-    let jump = &dual.stiffness.jump;
-    let compliance = dual.stiffness.compliance_of_rows(&method.problem)?;
-    let place = places(jump);
-    let node = |given| Node::new(jump, given, |r| place[r], (lambda, active), &compliance);
-    Ok(method.problem.friction.iter().map(node).collect())
-}
-
-/// The owned row of each row that this rank provides.
-fn places(jump: &Jump) -> Vec<usize> {
-    let rows = jump.rows_between_bodies();
-    let mut place = vec![0; rows.len()];
-    for i in rows {
-        place[jump.given(i)] = i;
-    }
-    place
-}
-
-/// The largest distance of a solution from the law of friction, as a force. Collective.
-pub fn error(method: &LinearMethod, solution: &LinearSolution) -> Result<f64> {
-    let held = &method.dual().stiffness.jump.active.clone();
-    let step = node::Step {
-        lambda: &solution.lambda,
-        gaps: &solution.gaps,
-        active: held,
-    };
-    let nodes = nodes(method, &solution.lambda, held)?;
-    let mut largest = [nodes.iter().fold(0.0, |a: f64, n| a.max(n.error(&step)))];
-    max_all(method.session.comm(), &mut largest);
-    Ok(largest[0])
 }

@@ -11,6 +11,9 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
 
+/// Springs across slips are at most this many times softer than nodes.
+const SOFT: f64 = 100.0;
+
 /// The state of a node in the equations of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NodeState {
@@ -47,6 +50,8 @@ pub struct Step<'s> {
     pub lambda: &'s [f64],
     pub gaps: &'s [f64],
     pub active: &'s [bool],
+    /// Slips below this are rounding, or residuals of the step.
+    pub nothing: f64,
 }
 
 /// The change of a node in a step.
@@ -95,14 +100,15 @@ impl Node {
         }
     }
 
-    /// The turn that brings the first row along the slip; `None` if it is there, and in the plane.
+    /// The turn that brings the first row along the slip, or where the node does not slip to its given direction; `None`
+    /// if it is there, and in the plane.
     pub fn turn(&mut self) -> Option<Turn> {
         let [a, b] = self.tangential[..] else {
             return None;
         };
         let to = match self.state {
             NodeState::Slip(d) => d,
-            NodeState::Apart | NodeState::Stick => return None,
+            NodeState::Apart | NodeState::Stick => [1.0, 0.0],
         };
         if to == self.axis {
             return None;
@@ -122,17 +128,29 @@ impl Node {
     pub fn holds(&self) -> [bool; 2] {
         match self.state {
             NodeState::Stick => [true; 2],
-            NodeState::Slip(_) => [false, true],
+            NodeState::Slip(_) => [false, self.is_stiff_across()],
             NodeState::Apart => [false; 2],
+        }
+    }
+
+    /// Whether the row across the slip is to hold. A spring much softer than the node costs iterations, and is not needed:
+    /// its force is small, and follows the slip from step to step.
+    fn is_stiff_across(&self) -> bool {
+        self.tangential.len() == 2 && self.g > 0.0 && self.stiffness * self.slipped <= SOFT * self.g
+    }
+
+    /// The row across the slip; `None` in the plane, and if it does not slip.
+    pub fn slips_beside(&self) -> Option<usize> {
+        match (self.state, &self.tangential[..]) {
+            (NodeState::Slip(_), &[_, across]) => Some(across),
+            _ => None,
         }
     }
 
     /// The compliance of the row across the slip; 0 unless it slips in space.
     pub fn across(&self) -> f64 {
         match self.state {
-            NodeState::Slip(_) if self.g > 0.0 && self.tangential.len() == 2 => {
-                self.slipped / self.g
-            }
+            NodeState::Slip(_) if self.is_stiff_across() => self.slipped / self.g,
             _ => 0.0,
         }
     }
@@ -147,6 +165,22 @@ impl Node {
     pub fn on_rows(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [c * x + s * y, c * y - s * x]
+    }
+
+    /// The size of the given force of friction; zero unless the node slips.
+    pub fn slipping(&self) -> f64 {
+        match self.state {
+            NodeState::Slip(_) => self.g,
+            NodeState::Apart | NodeState::Stick => 0.0,
+        }
+    }
+
+    /// The bound that follows from the multipliers of a step, if the node slips; else 0.
+    pub fn following(&self, lambda: &[f64]) -> f64 {
+        match self.state {
+            NodeState::Slip(_) => self.bound.at(lambda[self.normal]),
+            NodeState::Apart | NodeState::Stick => 0.0,
+        }
     }
 
     /// The given force of friction in the directions that were given; zero unless the node slips.
@@ -177,7 +211,11 @@ impl Node {
         if !step.active[self.normal] && !self.bound.acts_apart() {
             return (NodeState::Apart, 0.0);
         }
-        let [force, slip] = self.tangent(step);
+        let [mut force, slip] = self.tangent(step);
+        // The force along a slip is that of the next step.
+        if let NodeState::Slip(d) = self.state {
+            force = [0, 1].map(|k| force[k] + (g - self.g) * d[k]);
+        }
         let s = [0, 1].map(|k| force[k] + self.stiffness * slip[k]);
         let size = length(s);
         // A node that would slip the other way sticks first: all nodes of a body that slides too far would turn.
@@ -185,10 +223,22 @@ impl Node {
             NodeState::Slip(d) => d[0] * s[0] + d[1] * s[1] < 0.0,
             NodeState::Apart | NodeState::Stick => false,
         };
-        let state = if size <= g || turns {
+        // Rows of another contact may hold a node that slips: its slip vanishes, and says nothing.
+        let rests = match self.state {
+            NodeState::Slip(d) => (d[0] * slip[0] + d[1] * slip[1]).abs() <= step.nothing,
+            NodeState::Apart | NodeState::Stick => false,
+        };
+        let state = if size <= g && rests {
+            self.state
+        } else if size <= g || turns {
             NodeState::Stick
         } else {
-            NodeState::Slip(s.map(|s| s / size))
+            // A slip that is more than rounding has its own direction.
+            let w = length(slip);
+            match self.state {
+                NodeState::Slip(_) if w > step.nothing => NodeState::Slip(slip.map(|v| v / w)),
+                _ => NodeState::Slip(s.map(|s| s / size)),
+            }
         };
         (state, g)
     }
@@ -202,7 +252,9 @@ impl Node {
         let flips = kind != std::mem::discriminant(&state);
         (self.state, self.g) = (state, g);
         self.slipped = match state {
-            NodeState::Slip(d) => (d[0] * slip[0] + d[1] * slip[1]).max(0.0),
+            NodeState::Slip(d) => Some(d[0] * slip[0] + d[1] * slip[1])
+                .filter(|along| *along > step.nothing)
+                .unwrap_or(0.0),
             NodeState::Apart | NodeState::Stick => 0.0,
         };
         let now = self.force();
@@ -210,6 +262,19 @@ impl Node {
             flips,
             moves: length([now[0] - before[0], now[1] - before[1]]),
         }
+    }
+
+    /// Lets the node slip if it sticks and slips all the same, because another contact holds it elsewhere. Returns whether
+    /// it does.
+    pub fn gives_way(&mut self, step: &Step<'_>) -> bool {
+        let slip = self.tangent(step)[1];
+        let size = length(slip);
+        let gives = self.state == NodeState::Stick && size > step.nothing;
+        if gives {
+            self.state = NodeState::Slip(slip.map(|w| w / size));
+            self.slipped = size;
+        }
+        gives
     }
 
     /// How far a solution is from the law of friction, |λ_t − Π_g(λ_t + k w)| with the projection Π_g onto the disc of

@@ -29,6 +29,7 @@ fn after(
         lambda: &[normal, force],
         gaps: &[0.0, slip],
         active: &[touches, true],
+        nothing: 1e-3,
     });
     (node.state, node.g, change)
 }
@@ -89,6 +90,7 @@ fn the_error_is_a_force() {
             lambda: &[normal, force],
             gaps: &[0.0, slip],
             active: &[true, true],
+            nothing: 0.0,
         })
     };
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
@@ -119,6 +121,7 @@ fn rows_in_space_are_turned_along_the_slip() {
         lambda: &[2.0, 1.0, 0.1],
         gaps: &[0.0, 0.25, 0.0],
         active: &[true, false, true],
+        nothing: 0.0,
     };
     let change = node.update(&step);
     assert!(!change.flips);
@@ -134,4 +137,42 @@ fn rows_in_space_are_turned_along_the_slip() {
         (d[0] - wanted[0]).abs() < 1e-14 && (d[1] - wanted[1]).abs() < 1e-14,
         "{d:?}"
     );
+}
+
+/// Another contact may hold a node that slips, and then its slip vanishes: it stays, and does not stick again and again.
+#[test]
+fn a_node_that_others_hold_stays_at_its_bound() {
+    let slips = || node(RIGHT, 1.0);
+    for slip in [0.0, 9e-4, -9e-4] {
+        assert_eq!(after(slips(), [2.0, 1.0, slip], true).0, RIGHT);
+    }
+    assert_eq!(after(slips(), [2.0, 1.0, -2e-3], true).0, NodeState::Stick);
+    // One that sticks, and is moved all the same, gives way.
+    let moved = |slip: f64| {
+        let mut node = node(NodeState::Stick, 1.0);
+        let gives = node.gives_way(&Step {
+            lambda: &[2.0, 0.0],
+            gaps: &[0.0, slip],
+            active: &[true, true],
+            nothing: 1e-3,
+        });
+        (gives, node.state)
+    };
+    assert_eq!(moved(-2e-3), (true, LEFT));
+    assert_eq!(moved(9e-4), (false, NodeState::Stick));
+}
+
+/// Springs across a slip that are far softer than the node are left out.
+#[test]
+fn soft_springs_across_a_slip_do_not_hold() {
+    let mut node = Node {
+        tangential: vec![1, 2],
+        ..node(RIGHT, 1e-3)
+    };
+    node.slipped = 1e-2;
+    assert_eq!((node.holds(), node.across()), ([false, true], 10.0));
+    node.slipped = 1.0;
+    assert_eq!((node.holds(), node.across()), ([false, false], 0.0));
+    node.g = 0.0;
+    assert_eq!(node.holds(), [false, false]);
 }

@@ -1,0 +1,42 @@
+//! A solution beside the law of friction.
+
+use super::node::{self, Node};
+use crate::feti::jump::operator::Jump;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::Result;
+use parallel::exchange::max_all;
+
+/// The nodes of this rank in the states that multipliers and a set say. Collective.
+pub(super) fn nodes(method: &LinearMethod, lambda: &[f64], active: &[bool]) -> Result<Vec<Node>> {
+    let dual = method.dual();
+    let jump = &dual.stiffness.jump;
+    let compliance = dual.stiffness.compliance_of_rows(&method.problem)?;
+    let place = places(jump);
+    let node = |given| Node::new(jump, given, |r| place[r], (lambda, active), &compliance);
+    Ok(method.problem.friction.iter().map(node).collect())
+}
+
+/// The owned row of each row that this rank provides.
+fn places(jump: &Jump) -> Vec<usize> {
+    let rows = jump.rows_between_bodies();
+    let mut place = vec![0; rows.len()];
+    for i in rows {
+        place[jump.given(i)] = i;
+    }
+    place
+}
+
+/// The largest distance of a solution from the law of friction, as a force. Collective.
+pub fn error(method: &LinearMethod, solution: &LinearSolution) -> Result<f64> {
+    let held = &method.dual().stiffness.jump.active.clone();
+    let step = node::Step {
+        lambda: &solution.lambda,
+        gaps: &solution.gaps,
+        active: held,
+        nothing: 0.0,
+    };
+    let nodes = nodes(method, &solution.lambda, held)?;
+    let mut largest = [nodes.iter().fold(0.0, |a: f64, n| a.max(n.error(&step)))];
+    max_all(method.session.comm(), &mut largest);
+    Ok(largest[0])
+}
