@@ -175,6 +175,11 @@ fn sliding_bars_and_belts_come_near_their_closed_forms() {
         let off = errors(&plate, &format!("u_x of {point}"));
         assert!(off.iter().all(|e| *e < 4e-3), "{point}: {off:?}");
     }
+    let shoe = quick("shoe", 1, &dir);
+    assert!(errors(&shoe, "friction").iter().all(|e| *e < 1e-4));
+    assert!(errors(&shoe, "(way − expected) / 9 mm")
+        .iter()
+        .all(|e| *e < 2e-3));
 }
 
 #[test]

@@ -38,7 +38,7 @@ struct BenchmarkCase {
 }
 
 /// All cases.
-const CASES: [BenchmarkCase; 19] = [
+const CASES: [BenchmarkCase; 20] = [
     BenchmarkCase {
         name: "patch",
         title: "Contact patch test: two blocks with different meshes under a pressure of 1 from all sides",
@@ -158,6 +158,12 @@ const CASES: [BenchmarkCase; 19] = [
                 side, μ = 1",
         reference: "the mean of several programs (Code_Aster's V6.04.128, which keeps 5 %)",
         run: |r| Ok((friction::plate::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "shoe",
+        title: "Code_Aster's SSNV503: a shoe on a rigid plane, pressed by 300 N/mm² and pushed from the side, μ = 0.3",
+        reference: "equilibrium (Code_Aster's V6.04.503): it sticks under 178.2 N/mm², slips by 9 mm under 181.8 N/mm²",
+        run: |r| Ok((friction::shoe::run(r)?, Vec::new())),
     },
 ];
 

@@ -9,6 +9,7 @@ pub mod incline;
 mod mindlin;
 pub mod plate;
 pub mod roller;
+pub mod shoe;
 pub mod spheres;
 
 use std::collections::HashMap;
