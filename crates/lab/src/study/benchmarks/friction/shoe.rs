@@ -12,7 +12,7 @@ use base::Result;
 
 const FRICTION: f64 = 0.3;
 
-/// What presses, in N per mm of depth, and the stiffness of the spring in N/mm.
+/// The force that presses, in N per mm of depth, and the stiffness of the spring in N/mm.
 const NORMAL: f64 = 300.0 * 40.0;
 const SPRING: f64 = 4.0;
 
