@@ -1,6 +1,9 @@
 //! Friction in scenes: its keys, the rows that they make, and sentences on bad input.
 
+use crate::support::session::with_session;
 use fetifeti::problem::{FrictionBound, Law};
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
 use scene::Scene;
 
 /// A block on a plane, with further lines of the obstacle.
@@ -139,6 +142,32 @@ fn rows_are_made_where_something_may_slide() {
     assert_eq!(scene.friction_nodes(&|_| true).len(), 4);
 }
 
+/// In space a node slides in a plane of symmetry, along the tangent that is left to it.
+#[test]
+fn nodes_on_a_plane_of_symmetry_slide_along_it() {
+    let solid = |held: &str, friction: &str| {
+        format!(
+            "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"block\"\nsize = [1, 1, 1]\n\
+             elements = [2, 2, 2]\nload = [0, -1, 0]\ndirichlet = {{ {held} }}\n\
+             [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\n\
+             plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nfriction = 1\n{friction}"
+        )
+    };
+    let scene = Scene::parse("s.toml", &solid("back = { z = 0 }", "")).expect("a scene");
+    let count = |of: usize| {
+        let nodes = scene.friction_nodes(&|_| true).into_iter();
+        nodes.filter(|n| n.tangential.len() == of).count()
+    };
+    assert_eq!([count(1), count(2)], [3, 6]);
+    let both = Scene::parse("s.toml", &solid("back = { x = 0, z = 0 }", "")).expect("a scene");
+    assert_eq!(both.friction_nodes(&|_| true).len(), 6);
+    refused(
+        &solid("back = { z = 0 }", "move = [0, 0, 0.1]\n"),
+        "s.toml:9: friction of the obstacle of s.toml:9 at a node whose slip is given along one tangent, and free \
+         along the other, expected both given or both free",
+    );
+}
+
 /// A plane that moves drags the nodes: c is its way along t since the load step before.
 #[test]
 fn a_moving_obstacle_drags() {
@@ -163,4 +192,27 @@ fn entries_with_different_laws_at_one_node_are_named() {
     );
     let text = format!("{}{second}friction = 0.1", block("friction = 0.1"));
     Scene::parse("s.toml", &text).expect("one law");
+}
+
+/// A slender bar whose rigid motions have rounding: its rows were taken for many directions along the plane.
+#[test]
+fn rows_of_slender_bodies_have_one_direction_along_a_plane() {
+    for (elements, height) in [(36, 0.025), (40, 0.025), (48, 0.025), (40, 0.02)] {
+        let text = format!(
+            "physics = \"elasticity\"\nplane = \"stress\"\norder = 2\n\
+             [[body]]\nname = \"bar\"\nsize = [1, {height}]\nelements = [{elements}, 2]\nsubdomains = [2, 1]\n\
+             young = 1e4\npoisson = 0\npressure = {{ top = 1 }}\ntraction = {{ right = [{}, 0] }}\n\
+             [[obstacle]]\nbody = \"bar\"\nside = \"bottom\"\n\
+             plane = {{ point = [0, 0], normal = [0, 1] }}\nfriction = 0.3\n",
+            0.15 / height
+        );
+        let scene = Scene::parse("bar.toml", &text).expect("a scene");
+        let problem = scene.substructures(&|_| true).expect("a problem");
+        let said = with_session(move |session| {
+            let mut solver = FetiFeti::new(session, problem, MethodSettings::default())?;
+            Ok::<_, base::Error>(solver.solve().err().map(|e| e.to_string()))
+        });
+        // Without friction nothing would hold the bar along the plane.
+        assert_eq!(said.unwrap(), None, "{elements} elements, height {height}");
+    }
 }

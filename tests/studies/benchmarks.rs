@@ -138,6 +138,75 @@ fn round_bodies_have_the_pressures_of_half_spaces() {
 }
 
 #[test]
+fn blocks_and_arches_stand_and_fall_as_statics_has_it() {
+    let dir = Scratch::new("benchmarks-stand");
+    for ranks in [1, 2] {
+        let incline = quick("incline", ranks, &dir);
+        // Both orders above the angle of friction.
+        assert_eq!(errors(&incline, "not refused as sliding"), [0.0; 4]);
+        let along = errors(&incline, "friction / weight along the slope");
+        assert!(along.len() == 4 && along.iter().all(|e| *e < 1e-8));
+    }
+    let arch = quick("arch", 1, &dir);
+    assert!(errors(&arch, "wrong answer").iter().all(|e| *e == 0.0));
+    assert!(errors(&arch, "springings / weight")
+        .iter()
+        .all(|e| *e < 1e-6));
+    // Sixteen voussoirs are half a percent from any number of them.
+    let least = errors(&arch, "least thickness, statics / Milankovitch");
+    assert!(least.iter().all(|e| *e < 5e-3), "{least:?}");
+}
+
+#[test]
+fn sliding_bars_and_belts_come_near_their_closed_forms() {
+    let dir = Scratch::new("benchmarks-slide");
+    let belt = quick("belt", 1, &dir);
+    for series in &belt.series {
+        let order = series.order.expect("an order");
+        assert!(order > 0.5, "{}: {order}", series.name);
+    }
+    assert!(errors(&belt, "T2/T1").iter().all(|e| *e < 0.015));
+    let bar = quick("bar", 2, &dir);
+    assert!(errors(&bar, "μ p dℓ/dF").iter().all(|e| *e < 0.01));
+    assert!(errors(&bar, "F").iter().all(|e| *e < 0.02));
+    let plate = quick("plate", 1, &dir);
+    // The reference has three digits at A to D.
+    for point in ["A", "B", "C", "D"] {
+        let off = errors(&plate, &format!("u_x of {point}"));
+        assert!(off.iter().all(|e| *e < 4e-3), "{point}: {off:?}");
+    }
+    let shoe = quick("shoe", 1, &dir);
+    assert!(errors(&shoe, "friction").iter().all(|e| *e < 1e-4));
+    assert!(errors(&shoe, "(way − expected) / 9 mm")
+        .iter()
+        .all(|e| *e < 2e-3));
+}
+
+#[test]
+fn round_bodies_stick_and_slip_as_half_spaces_do() {
+    let dir = Scratch::new("benchmarks-mindlin");
+    let cases = [
+        ("mindlin-cylinder", 1),
+        ("mindlin-sphere", 1),
+        ("roller-friction", 2),
+    ];
+    for (name, ranks) in sample(3, cases) {
+        let case = quick(name, ranks, &dir);
+        if name == "roller-friction" {
+            assert!(errors(&case, "u_y of B").iter().all(|e| *e < 0.03));
+            continue;
+        }
+        // Four edges in the radius of the contact of balls, eight in that of the cylinder.
+        let most = if name == "mindlin-sphere" { 0.25 } else { 0.1 };
+        for series in &case.series {
+            let finest = series.meshes.last().expect("a mesh");
+            let first = &finest.values[0];
+            assert!(first.error < most, "{}: {}", series.name, first.error);
+        }
+    }
+}
+
+#[test]
 fn unknown_cases_are_refused() {
     let run = run_fetifeti(1, &["study", "benchmarks", "nonsense"]);
     assert_eq!(run.code, 2);

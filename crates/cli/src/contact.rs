@@ -151,10 +151,11 @@ pub(super) fn with_inequalities<'a>(
     groups.filter(|(rows, _)| rows.iter().any(|r| r.is_inequality()))
 }
 
-/// The nodes of one interface or obstacle, with their areas if `areas` is set.
+/// The nodes of one interface or obstacle, with their areas if `areas` is set; `tangential` are all such rows.
 pub(super) fn nodes(
     scene: &Scene,
     (rows, smoothed): (&[SolvedRow], Vec<f64>),
+    tangential: &[SolvedRow],
     areas: bool,
 ) -> InterfaceNodes {
     let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
@@ -171,7 +172,7 @@ pub(super) fn nodes(
             Vec::new()
         },
         smoothed,
-        friction: Vec::new(),
+        friction: friction::along(rows, tangential),
     }
 }
 
@@ -194,10 +195,7 @@ pub fn profiles(
         let body = rows[0].body();
         let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
         InterfaceProfile {
-            nodes: InterfaceNodes {
-                friction: friction::along(rows, tangential),
-                ..nodes(scene, (rows, smoothed), scene.has_pressure())
-            },
+            nodes: nodes(scene, (rows, smoothed), tangential, scene.has_pressure()),
             label: if curved { "t" } else { ["x", "y"][along] }.into(),
         }
     };

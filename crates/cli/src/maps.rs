@@ -14,13 +14,17 @@ use scene::Scene;
 const STEEP: f64 = 0.4;
 
 /// The maps of all interfaces and obstacles that have inequalities.
-pub(super) fn of(scene: &Scene, rows: &[SolvedRow]) -> Vec<ContactMap> {
+pub(super) fn of(scene: &Scene, rows: &[SolvedRow], tangential: &[SolvedRow]) -> Vec<ContactMap> {
     with_inequalities(scene, rows)
-        .map(|(rows, smoothed)| map(scene, rows, smoothed))
+        .map(|found| map(scene, found, tangential))
         .collect()
 }
 
-fn map(scene: &Scene, rows: &[SolvedRow], smoothed: Vec<f64>) -> ContactMap {
+fn map(
+    scene: &Scene,
+    (rows, smoothed): (&[SolvedRow], Vec<f64>),
+    tangential: &[SolvedRow],
+) -> ContactMap {
     let along = |d: usize| {
         let least = |a: f64, r: &SolvedRow| a.min(r.normal()[d].abs());
         rows.iter()
@@ -62,7 +66,7 @@ fn map(scene: &Scene, rows: &[SolvedRow], smoothed: Vec<f64>) -> ContactMap {
         }
     }
     ContactMap {
-        nodes: nodes(scene, (rows, smoothed), true),
+        nodes: nodes(scene, (rows, smoothed), tangential, true),
         labels,
         at,
         cells,

@@ -288,7 +288,11 @@ fn write_fields(
                     &scene.title,
                     dir,
                 )?,
-                _ => contact_map::write(&maps::of(scene, &course.rows), &scene.title, dir)?,
+                _ => contact_map::write(
+                    &maps::of(scene, &course.rows, &course.tangential),
+                    &scene.title,
+                    dir,
+                )?,
             };
         }
         if !course.load_steps.is_empty() {

@@ -6,6 +6,8 @@
 //!
 //! Few motions are asked about by the exact method of Lawson and Hanson, many by rigid bodies on springs.
 
+use std::collections::HashSet;
+
 use mpi::topology::SimpleCommunicator;
 
 use super::springs;
@@ -23,6 +25,10 @@ use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 use base::linalg::sorted::distinct;
 use parallel::parcels::Parcels;
+
+/// Directions of rows that differ by less in every entry are one, relative to the largest entry. Rigid motions of
+/// slender bodies have rounding of 1e-12.
+const ALIKE: f64 = 1e-10;
 
 /// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
 /// begins at `lambda`. Collective.
@@ -118,7 +124,17 @@ fn directions(
     }
     let all = sent.gather_all(comm);
     let all = all.iter().flat_map(Parcels::iter);
-    let all = distinct(all.map(|(free, entries)| (free, entries.len(), entries)));
+    let mut all = distinct(all.map(|(free, entries)| (free, entries.len(), entries)));
+    // Rounding may have left several directions where there is one, and least squares would take their difference for
+    // another one. Two grids: what the edge of a cell divides lies in one cell of the other.
+    for shift in [0.0, 0.5] {
+        let cell = |&[c, v]: &[u64; 2]| (c, (f64::from_bits(v) / ALIKE + shift).round() as i64);
+        let mut known = HashSet::new();
+        all.retain(|(free, _, entries)| {
+            let cells: Vec<(u64, i64)> = entries.iter().map(cell).collect();
+            known.insert((*free, cells))
+        });
+    }
     let mut columns = Dense::zeros(r, all.len());
     for (k, (_, _, entries)) in all.iter().enumerate() {
         for &[c, v] in *entries {

@@ -156,12 +156,16 @@ impl Place<'_> {
         } else {
             return Ok(());
         };
-        let location = self.spec.location_of(self.entry);
-        let entry = self.entry.named(Some(location));
-        Err(Error::input(format!("friction of {entry} {why}")).at(location))
+        Err(self.refused(why))
     }
 
-    /// Friction at the node; none where given values on both sides leave nothing to slide.
+    fn refused(&self, why: &str) -> Error {
+        let location = self.spec.location_of(self.entry);
+        let entry = self.entry.named(Some(location));
+        Error::input(format!("friction of {entry} {why}")).at(location)
+    }
+
+    /// Friction at the node, along the tangents along which given values leave something to slide; none without any.
     fn friction(
         &self,
         spec: &FrictionSpec,
@@ -180,9 +184,24 @@ impl Place<'_> {
         };
         let tangents = tangents(self.row.direction, self.bodies[0].mesh().dim());
         let rows = tangents.into_iter();
-        let rows: Vec<Row> = rows.map(|t| tangential(self.bodies, self.row, t)).collect();
-        let free = rows.iter().all(|row| !row.terms(self.bodies).is_empty());
-        Ok(free.then_some(NodeFriction {
+        let rows = rows.map(|t| tangential(self.bodies, self.row, t));
+        let (rows, held): (Vec<Row>, Vec<Row>) =
+            rows.partition(|row| !row.terms(self.bodies).is_empty());
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        // A node on a plane of symmetry slides along the other tangent.
+        let slides = |row: &Row| {
+            let given = row.bound.as_ref().map_or([0.0; 2], |bound| bound.given);
+            given[0] != given[1] || dot(motion, row.direction) != 0.0
+        };
+        if held.iter().any(slides) {
+            return Err(self.refused(
+                "at a node whose slip is given along one tangent, and free along the other, expected both given or \
+                 both free",
+            ));
+        }
+        Ok(Some(NodeFriction {
             tangential: rows,
             stress,
             stick_stiffness,

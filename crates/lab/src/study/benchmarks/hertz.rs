@@ -8,8 +8,11 @@ use crate::study::hertz::{measure, Elastic, HertzContact, HertzPair, NodalPressu
 use base::{Error, Result};
 
 /// Young's modulus of steel and aluminium in N/mm², and Poisson's ratio of both.
-const YOUNG: [f64; 2] = [210e3, 70e3];
+pub const YOUNG: [f64; 2] = [210e3, 70e3];
 const POISSON: f64 = 0.3;
+
+/// The load of the roller, in N per mm of thickness.
+pub const ROLLER_LOAD: f64 = 35e3;
 
 /// The largest permitted errors of force, half-width and peak on the finest mesh.
 struct HertzLimits {
@@ -40,22 +43,34 @@ pub fn cylinder(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
 /// The roller of radius 50 mm under 35 kN per mm of thickness, on a block of 200 × 200 mm.
 pub fn roller(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
     let pair = pair(50.0, false);
-    let roller = Roller {
-        radius: 50.0,
-        block: [100.0, 200.0],
-        whole: true,
-        load: 8.0,
-        a: pair.under(35e3).a,
-    };
     let limits = HertzLimits {
         force: 1e-6,
         curve: 0.05,
         fit: 0.02,
     };
-    plane(runner, "roller", &roller, &pair, 35e3, &limits)
+    plane(
+        runner,
+        "roller",
+        &nafems(&pair),
+        &pair,
+        ROLLER_LOAD,
+        &limits,
+    )
 }
 
-fn pair(radius: f64, spheres: bool) -> HertzPair {
+/// The bodies of NAFEMS' benchmark.
+pub fn nafems(pair: &HertzPair) -> Roller {
+    Roller {
+        radius: 50.0,
+        block: [100.0, 200.0],
+        whole: true,
+        load: 8.0,
+        a: pair.under(ROLLER_LOAD).a,
+    }
+}
+
+/// Steel of this radius on aluminium.
+pub fn pair(radius: f64, spheres: bool) -> HertzPair {
     let body = |young, radius| Elastic {
         young,
         poisson: POISSON,
@@ -213,15 +228,19 @@ fn record(
     place: impl Fn([f64; 3]) -> f64,
 ) -> Result<MeshResult> {
     let pressures = pressures(run, place);
-    let measured = measure(&run.rows, &pressures).ok_or_else(|| {
+    let measured = measure(&run.last().rows, &pressures).ok_or_else(|| {
         Error::not_converged(format!(
             "{}: too few nodes touch for a half-width",
             run.file
         ))
     })?;
     let theory = pair.under(force);
-    let up = run.solved.scene.dim() - 1;
-    let vertical = run.rows.iter().map(|r| r.multiplier * r.normal()[up].abs());
+    let up = run.scene.dim() - 1;
+    let vertical = run
+        .last()
+        .rows
+        .iter()
+        .map(|r| r.multiplier * r.normal()[up].abs());
     let limit = |of: fn(&HertzLimits) -> f64| finest.map(of);
     let (off, curve) = beside(&pressures, &theory);
     let values = vec![
@@ -244,7 +263,7 @@ pub fn pressures(run: &SolvedScene, place: impl Fn([f64; 3]) -> f64) -> Vec<Noda
             active: row.holds(),
         })
     };
-    run.rows.iter().filter_map(pressure).collect()
+    run.last().rows.iter().filter_map(pressure).collect()
 }
 
 /// The root mean square of p − theory, relative to the theory's, and the pressures near the contact.

@@ -12,7 +12,7 @@ use mesh::MeshFile;
 const GROWTH: f64 = 0.5;
 
 /// Edges of the lower body in the contact over those of the upper one.
-const RATIO: f64 = 1.4;
+pub const RATIO: f64 = 1.4;
 
 /// The size of elements, as a function of the place.
 pub struct ElementSize {
@@ -25,7 +25,8 @@ pub struct ElementSize {
 }
 
 impl ElementSize {
-    fn at(&self, distance: f64) -> f64 {
+    /// The size at a distance from the middle of the contact.
+    pub fn at(&self, distance: f64) -> f64 {
         let away = (distance / self.unit - 1.5).max(0.0);
         (self.edge * self.unit * (1.0 + GROWTH * away)).min(self.most)
     }
@@ -44,7 +45,7 @@ const NAMES: [&str; 8] = [
 ];
 
 /// Two plane bodies that are being put together.
-struct TwoBodyMesh {
+pub struct TwoBodyMesh {
     points: Vec<[f64; 3]>,
     cells: Vec<Vec<u32>>,
     of_cell: Vec<usize>,
@@ -52,7 +53,8 @@ struct TwoBodyMesh {
 }
 
 impl TwoBodyMesh {
-    fn new(order: usize) -> TwoBodyMesh {
+    /// No body yet.
+    pub fn new(order: usize) -> TwoBodyMesh {
         TwoBodyMesh {
             points: Vec::new(),
             cells: Vec::new(),
@@ -62,7 +64,7 @@ impl TwoBodyMesh {
     }
 
     /// Adds a body; `curve` puts the middle of an edge of the boundary onto a curve.
-    fn add(
+    pub fn add(
         &mut self,
         outline: &[[f64; 2]],
         size: &dyn Fn([f64; 2]) -> f64,
@@ -88,7 +90,7 @@ impl TwoBodyMesh {
     }
 
     /// The mesh; `side` is as in [`build`], with the number of the body.
-    fn finish(self, name: &str, side: impl Fn([f64; 3], usize) -> usize) -> MeshFile {
+    pub fn finish(self, name: &str, side: impl Fn([f64; 3], usize) -> usize) -> MeshFile {
         let kind = [CellKind::Triangle3, CellKind::Triangle6][self.order - 1];
         let groups = GroupNumbers {
             names: &NAMES,

@@ -2,6 +2,7 @@
 //! other programs. Every case is solved on several meshes; a tolerance that is missed is reported.
 
 mod decks;
+mod friction;
 mod hertz;
 mod meshes;
 mod patch;
@@ -37,7 +38,7 @@ struct BenchmarkCase {
 }
 
 /// All cases.
-const CASES: [BenchmarkCase; 11] = [
+const CASES: [BenchmarkCase; 20] = [
     BenchmarkCase {
         name: "patch",
         title: "Contact patch test: two blocks with different meshes under a pressure of 1 from all sides",
@@ -105,6 +106,64 @@ const CASES: [BenchmarkCase; 11] = [
         title: "The rings of SSNP167 in m, mm and µm",
         reference: "the scene in metres: relative differences",
         run: |r| Ok((units::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "incline",
+        title: "A block on an incline, on both sides of the angle of friction, μ = 0.3",
+        reference: "it stands if and only if tan α ≤ μ; equilibrium",
+        run: |r| Ok((friction::incline::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "mindlin-cylinder",
+        title: "Cattaneo's and Mindlin's cylinder on a block: pressed down, pushed along, and back; R = 8, E = 200, \
+                ν = μ = 0.3",
+        reference: "Mindlin and Deresiewicz (1953) for half-planes: c/a = √(1 − Q/μP), on the way back √(1 − ΔQ/2μP)",
+        run: |r| Ok((friction::cylinders::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "mindlin-sphere",
+        title: "Mindlin's balls: pressed together, pushed along each other, and back; R = 8, E = 200, ν = 0, μ = 0.3",
+        reference: "Mindlin and Deresiewicz (1953) for half-spaces: c/a = (1 − Q/μP)^(1/3), on the way back \
+                    (1 − ΔQ/2μP)^(1/3)",
+        run: |r| Ok((friction::spheres::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "bar",
+        title: "A bar of the length 1 and the height h, pressed onto its bed by p = 1 and pulled at one end, μ = 0.3",
+        reference: "of a thin bar: it slips over ℓ = F/(μ p), and F² = 2 E h μ p u",
+        run: |r| Ok((friction::bar::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "belt",
+        title: "A belt of the thickness h around half of a drum of radius R, μ = 0.3",
+        reference: "T2/T1 = exp(μ π/(1 + h/2R)), where thin belts have e^{μπ}",
+        run: |r| Ok((friction::belt::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "arch",
+        title: "A semicircular arch of voussoirs under its weight, at the least thickness and the least friction",
+        reference: "limit analysis of rigid voussoirs; 0.1075 of the radius (Milankovitch, 1907) for many",
+        run: |r| Ok((friction::arch::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "roller-friction",
+        title: "NAFEMS/FENET contact benchmark 1 without friction and with μ = 0.1; the foot of the block is fixed",
+        reference: "displacements of the point B, on the block under the roller, of Code_Aster's SSNP154 (V6.03.154), \
+                    which takes rotations to be large; the curve is Hertz's p/p0, the bound of τ/(μ p0)",
+        run: |r| Ok((friction::roller::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "plate",
+        title: "Code_Aster's SSNV128: a plate of 40 × 40 mm on a rigid plane, under pressure from above and from the \
+                side, μ = 1",
+        reference: "the mean of several programs (Code_Aster's V6.04.128, which keeps 5 %)",
+        run: |r| Ok((friction::plate::run(r)?, Vec::new())),
+    },
+    BenchmarkCase {
+        name: "shoe",
+        title: "Code_Aster's SSNV503: a shoe on a rigid plane, pressed by 300 N/mm² and pushed from the side, μ = 0.3",
+        reference: "equilibrium (Code_Aster's V6.04.503): it sticks under 178.2 N/mm², slips by 9 mm under 181.8 N/mm²",
+        run: |r| Ok((friction::shoe::run(r)?, Vec::new())),
     },
 ];
 

@@ -172,15 +172,24 @@ pub fn figure(case: &BenchmarkReport) -> Option<Figure> {
         );
     }
     let across = match case.case.as_str() {
-        "rings" | "shrink-fit" => "θ in degrees",
+        "rings" | "shrink-fit" | "belt" => "θ in degrees",
+        "bar" => "x",
         _ => "x / a",
     };
     let ordinate = match case.case.as_str() {
         "rings" | "shrink-fit" | "punch" => "p / mean",
+        "mindlin-cylinder" | "mindlin-sphere" | "roller-friction" => "τ / μ p_{0}",
+        "bar" => "τ / μ p",
+        "belt" => "τ R / μ T_{1}",
         _ => "p / p_{0}",
     };
     let [x, y] = [across, ordinate].map(|name| Axis::new(name, Scale::Linear));
-    let pressure = Panel::new("Pressure, finest meshes", x, y, curves);
+    let kind = if ordinate.starts_with('τ') {
+        "Shear stress"
+    } else {
+        "Pressure"
+    };
+    let pressure = Panel::new(format!("{kind}, finest meshes"), x, y, curves);
     let mut errors = Vec::new();
     let mut sizes = Vec::new();
     for (k, s) in case.series.iter().enumerate() {

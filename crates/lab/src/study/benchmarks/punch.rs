@@ -127,6 +127,7 @@ fn record(run: &SolvedScene, edge: f64, theory: &Rounded, finest: bool) -> MeshR
         }
     }
     let force: f64 = run
+        .last()
         .rows
         .iter()
         .map(|r| r.multiplier * r.normal()[1].abs())

@@ -98,7 +98,7 @@ impl Rings {
         let (mut curve, mut squares, mut whole) = (Vec::new(), 0.0, 0.0);
         // Weighted least squares of p = m + w cos 2θ.
         let mut sums = [0.0; 5];
-        for row in &run.rows {
+        for row in &run.last().rows {
             let [x, y, _] = row.label.point;
             let cos2 = (x * x - y * y) / (x * x + y * y);
             let (p, weight) = (row.pressure().unwrap_or(f64::NAN), row.label.area);

@@ -46,9 +46,9 @@ fn weight(k: usize) -> f64 {
 fn forces(run: &SolvedScene, n: usize) -> f64 {
     let above = |k: usize| 2.0 * HEIGHT * (k + 1..n).map(weight).sum::<f64>();
     let mut found = vec![0.0; n - 1];
-    for row in &run.rows {
+    for row in &run.last().rows {
         if let RowSource::Interface(k) = row.label.source {
-            let [low, high] = run.solved.scene.interfaces[k].bodies;
+            let [low, high] = run.scene.interfaces[k].bodies;
             assert_eq!(low + 1, high, "blocks touch their neighbours only");
             found[low] += row.multiplier;
         }

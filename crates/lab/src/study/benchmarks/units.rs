@@ -30,11 +30,12 @@ pub fn run(runner: &mut Runner) -> Result<Vec<MeshSeries>> {
             let run = runner.solve_to(&file, &rings.scene(8, order, units), None, 1e-13)?;
             let pressure = |p: f64| p / units.stress;
             let p: Vec<f64> = run
+                .last()
                 .rows
                 .iter()
                 .filter_map(|r| r.pressure().map(pressure))
                 .collect();
-            let solution = &run.solved.solution;
+            let solution = &run.last().solution;
             // Energy per thickness: N m/m.
             let energy = solution.energy;
             let counts = [solution.steps.len(), solution.iterations];
