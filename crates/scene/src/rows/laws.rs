@@ -153,16 +153,47 @@ impl Place<'_> {
             },
             FrictionSpec::Tresca(bound) => ShearBound::Tresca(self.value(bound, "tresca", false)?),
         };
-        let tangents = tangents(self.row.direction, self.bodies[0].mesh().dim());
-        let rows = tangents.into_iter();
-        let rows: Vec<Row> = rows.map(|t| tangential(self.bodies, self.row, t)).collect();
-        let free = rows.iter().all(|row| !row.terms(self.bodies).is_empty());
-        Ok(free.then_some(NodeFriction {
+        let mut rows = Vec::new();
+        let mut held = None;
+        for t in tangents(self.row.direction, self.bodies[0].mesh().dim()) {
+            let row = tangential(self.bodies, self.row, t);
+            if row.terms(self.bodies).is_empty() {
+                held = Some(row);
+            } else {
+                rows.push(row);
+            }
+        }
+        if rows.is_empty() {
+            return Ok(None);
+        }
+        // Along what given values hold on both sides, as in a plane of symmetry, nothing slides.
+        let slides = |row: &Row| {
+            row.right_hand_side(&Factors::none()) != 0.0 || dot(motion, row.direction) != 0.0
+        };
+        if let Some(slides) = held.filter(slides) {
+            return Err(self.slides_as_given(&slides));
+        }
+        Ok(Some(NodeFriction {
             tangential: rows,
             stress,
             stick_stiffness,
             motion,
         }))
+    }
+
+    /// The error of a node that given values let slide along one direction, and nothing along the other.
+    fn slides_as_given(&self, row: &Row) -> Error {
+        let node = self.row.members[0].expect("a contact has a first node");
+        let location = self.spec.location_of(self.entry);
+        let [x, y, z] = row.direction;
+        let at = node.spot(self.bodies);
+        let entry = self.entry.named(Some(location));
+        Error::input(format!(
+            "given values on both sides slide along ({x}, {y}, {z}) at {at} of body `{}` in {entry}, which has \
+             friction, expected values that leave both directions along the face free, or hold one of them",
+            self.bodies[node.body].spec.name
+        ))
+        .at(location)
     }
 
     /// The value of a profile, which must not be negative; nor zero if it is to be `positive`.
