@@ -93,8 +93,10 @@ impl<'a> DeckReader<'a> {
         let Some((duration, time)) = self.state.procedure.take() else {
             return Err(self.files.error(place, "*STEP: the step has no *STATIC"));
         };
+        self.no_change_pending()?;
         let state = &self.state;
-        let entries = state.supports.len()
+        let entries = state.friction.len()
+            + state.supports.len()
             + state.forces.len()
             + state.pressures.len()
             + state
@@ -119,6 +121,7 @@ impl<'a> DeckReader<'a> {
             place,
             duration,
             time,
+            friction: state.friction.clone(),
             prints: state.prints.clone(),
             fields: state.fields.clone(),
             ..DeckStep::default()
