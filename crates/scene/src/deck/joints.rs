@@ -126,7 +126,7 @@ pub(super) fn contacts(
 /// The law of a contact pair in a step; EXPONENTIAL and TABULAR pressures are hard here.
 fn law(deck: &Deck, pair: &ContactPair, step: usize) -> Result<ContactLaw> {
     let at = pair.interaction as usize;
-    let friction = deck.steps[step].friction[at].as_ref();
+    let friction = deck.steps[step].friction.get(at).and_then(Option::as_ref);
     let slope = match deck.interactions[at].overclosure {
         Overclosure::Linear { slope } => Some(slope),
         _ => None,
