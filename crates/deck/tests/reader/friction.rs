@@ -46,7 +46,22 @@ fn friction_and_softness_are_read() {
     assert!(deck.replaced[0].reason.contains("has no tension"));
 }
 
-/// What *CHANGE FRICTION says holds from its step on, for its interaction.
+/// The way to the end of a step counts where there is friction.
+#[test]
+fn increments_are_said_to_be_one() {
+    let notes = |law: &str, times: &str| {
+        let steps = format!("*END STEP\n*STEP\n*STATIC\n{times}\n");
+        good(&format!("{SURFACES}{law}{PAIR}"), &steps).replaced
+    };
+    let law = "*FRICTION\n.2,1e4\n";
+    let found = notes(law, ".1,1.");
+    assert_eq!(found[0].keyword, "*STATIC");
+    assert!(found[0].reason.ends_with("in one increment"));
+    assert!(notes(law, "1.,1.").is_empty() && notes(law, "0.,1.").is_empty());
+    assert!(notes("", ".1,1.").is_empty());
+}
+
+/// A *CHANGE FRICTION holds from its step on, for its interaction.
 #[test]
 fn friction_changes_between_steps() {
     let other = "*SURFACE INTERACTION,NAME=J\n*FRICTION\n.5,9.\n";
