@@ -86,7 +86,7 @@ fn a_deck_has_the_displacements_and_forces_of_calculix() {
 }
 
 /// Forces at nodes with load and support, at the nodes of a tie, and where bodies press on each other: forces of ties
-/// count, forces of contact do not. The contact of CalculiX is soft.
+/// count, forces of contact do not.
 #[test]
 fn forces_between_bodies_are_those_of_calculix() {
     for ranks in [1, 2, 4] {
@@ -101,6 +101,26 @@ fn forces_between_bodies_are_those_of_calculix() {
             assert!(sums.iter().all(|s| s.abs() < 1e-9), "{name}: {sums:?}");
         }
     }
+}
+
+/// Soft contact and friction with a stick slope in four steps: nodes stick, slip and part, meet again and slide back,
+/// and slide on with less friction. Each step begins where friction has slid to before.
+#[test]
+fn soft_contact_and_friction_of_a_deck_are_those_of_calculix() {
+    for ranks in [1, 2] {
+        let report = compare("rough", ranks, 2e-6);
+        let contact = &report["contact"]["interfaces"][0];
+        assert_eq!(
+            (&contact["slipping"], &contact["sticking"]),
+            (&6.into(), &0.into())
+        );
+        // With the coefficient 0.1 of the last step the face bears a tenth of the load of 0.03.
+        let friction: Vec<f64> = serde_json::from_value(contact["friction"].clone()).unwrap();
+        let size = friction.iter().map(|f| f * f).sum::<f64>().sqrt();
+        assert!(size > 0.0029 && size < 0.003, "{size}");
+    }
+    // In a plane of symmetry friction is along one direction.
+    compare("mirrored", 1, 2e-6);
 }
 
 /// A disc with nodes on its axis under pressure, gravity, a force and a spin. CalculiX's disc consists of flat wedges

@@ -90,6 +90,36 @@ fn scenes_that_are_not_solved_yet_are_refused() {
     );
 }
 
+/// Where the values of a block in space are given along one direction there is friction along the other. If they slide
+/// there, they would be half a slip.
+#[test]
+fn friction_beside_given_values_is_along_the_other_direction() {
+    let block = |given: &str| {
+        format!(
+            "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"block\"\nsize = 2\nelements = 1\nyoung = 1\n\
+             poisson = 0\ndirichlet = {{ bottom = {{ y = {given} }} }}\nload = [0, 0, -1]\n[[obstacle]]\n\
+             body = \"block\"\nside = \"bottom\"\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nfriction = 0.5\n"
+        )
+    };
+    let scene = Scene::parse("s.toml", &block("0")).expect("a scene");
+    let nodes = scene.friction_nodes(&|_| true);
+    assert_eq!(nodes.len(), 4);
+    let rows = scene.solver_rows(&|_| true);
+    for node in nodes {
+        let [t] = node.tangential[..] else {
+            panic!("{node:?}");
+        };
+        assert_eq!(rows[t].label.normal.map(f64::abs), [1.0, 0.0, 0.0]);
+    }
+    let text = Scene::parse("s.toml", &block("0.25")).map(|_| ());
+    let text = text.expect_err("a slip that is given").to_string();
+    assert!(
+        text.starts_with("s.toml:11: given values on both sides slide along (0, ")
+            && text.ends_with("expected values that leave both directions along the face free, or hold one of them"),
+        "{text}"
+    );
+}
+
 /// Tangential rows come after all others, in the blocks of their normal rows, and the bounds are forces.
 #[test]
 fn nodes_with_friction_have_tangential_rows() {

@@ -15,6 +15,7 @@ use super::{doubts, inputs, maps, picture, smoothed};
 use crate::checkpoint::Checkpoints;
 use base::{Error, Result};
 use fetifeti::problem::BodyNode;
+use fetifeti::solution::SolvedRow;
 use fetifeti::{FetiFeti, Status};
 use petsc::{give_back, Session};
 use report::destination::Destination;
@@ -24,7 +25,7 @@ use report::output;
 use report::pictures::contact_map;
 use report::plots::{load_steps, profile};
 use report::tables::summary;
-use scene::{distribution, fits, DeckScenes, Scene, Stepper};
+use scene::{distribution, fits, DeckScenes, Scene, SlipHistory, Stepper};
 
 /// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
@@ -38,12 +39,12 @@ pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
         destination.prepare()?;
         destination.print(&lines(&scene.sentences()))
     })?;
-    solve(session, &args, &destination, scene, clock, None)?;
-    Ok(())
+    solve(session, &args, &destination, scene, clock, None)
 }
 
-/// Solves the steps of a deck one after the other; each is a linear problem of its own. With several steps the results
-/// of each are in a directory of their own, and the report is that of the last.
+/// Solves the steps of a deck one after the other; each is a problem of its own, which begins where friction has slid
+/// to before. With several steps the results of each are in a directory of their own, and the report is that of the
+/// last.
 fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination) -> Result<()> {
     let in_full = fits::is_in_full(session)?;
     let deck = session.agree(DeckScenes::load(&args.scene))?;
@@ -56,16 +57,21 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
     let stem = stem.unwrap_or_default();
     let mut told = deck.notes();
     on_first_rank(session, || destination.print(&lines(&told)))?;
-    // Only rank 0 has tables.
-    let mut printed = Vec::new();
+    let mut course = FromDeck {
+        deck: &deck,
+        step: 0,
+        slid: SlipHistory::default(),
+        printed: Vec::new(),
+    };
     let n = deck.n_steps();
     for step in 0..n {
+        course.step = step;
         let clock = Instant::now();
         let title = match n {
             1 => stem.clone(),
             _ => format!("{stem}, step {}", step + 1),
         };
-        let scene = session.agree(deck.scene(&title, step))?;
+        let scene = session.agree(deck.scene_after(&course.slid, &title, step))?;
         distribution::same_on_all_ranks(session, &args.scene, &scene)?;
         // What steps have in common is said once.
         let mut new = scene.sentences();
@@ -81,13 +87,9 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
             of_step.json = destination.json.clone().filter(|_| step + 1 == n);
             on_first_rank(session, || of_step.prepare())?;
         }
-        let deck = FromDeck {
-            deck: &deck,
-            step,
-            printed,
-        };
-        printed = solve(session, args, &of_step, scene, clock, Some(deck))?;
+        solve(session, args, &of_step, scene, clock, Some(&mut course))?;
     }
+    let printed = course.printed;
     on_first_rank(session, || match &destination.out {
         Some(dir) if !printed.is_empty() => {
             let tables: Vec<deck::DatTable> =
@@ -104,23 +106,24 @@ pub(super) fn lines(notes: &[String]) -> String {
     notes.iter().map(|note| format!("{note}\n")).collect()
 }
 
-/// The step of a deck that a scene describes.
+/// The step of a deck that a scene describes, and what the steps up to it have left.
 struct FromDeck<'a> {
     deck: &'a DeckScenes,
     step: usize,
-    /// The tables that earlier steps have printed.
+    slid: SlipHistory,
+    /// The tables that are printed; only rank 0 has some.
     printed: Vec<NodePrint>,
 }
 
-/// Solves a scene and writes its results; returned is what the steps of its deck have printed up to this one.
+/// Solves a scene and writes its results.
 fn solve(
     session: &Session,
     args: &SolveArguments,
     destination: &Destination,
     scene: Scene,
     clock: Instant,
-    deck: Option<FromDeck>,
-) -> Result<Vec<NodePrint>> {
+    mut deck: Option<&mut FromDeck>,
+) -> Result<()> {
     let checkpoints = Checkpoints::new(
         session,
         &args.scene,
@@ -169,7 +172,6 @@ fn solve(
         .warnings
         .extend(smoothed::warnings(scene, &course.rows));
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
-    let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {
         let values = NodalValues::displacements(session, scene, solver, solution, course.step)?;
         let found = match session.rank() {
@@ -181,24 +183,25 @@ fn solve(
             Some(true) => Some(NodalValues::forces(session, scene, solver, &course)?),
             _ => None,
         };
-        if let (0, Some(deck)) = (session.rank(), &deck) {
+        if let (0, Some(deck)) = (session.rank(), &mut deck) {
             let displacement = |at: BodyNode| values.at(at.body, at.node);
             let force = |at: BodyNode| forces.as_ref().map_or([0.0; 3], |f| f.at(at.body, at.node));
             let tables = deck.deck.tables(deck.step, &displacement, &force);
-            printed.extend(tables.into_iter().map(NodePrint::new));
+            deck.printed.extend(tables.into_iter().map(NodePrint::new));
         }
     }
     if let Some(deck) = deck {
-        printed.splice(0..0, deck.printed);
+        let slid = SolvedRow::on_all_ranks(session.comm(), solution.tangential_rows());
+        deck.slid.add(scene, &slid);
+        report.node_print.clone_from(&deck.printed);
     }
-    report.node_print.clone_from(&printed);
     if let Some(dir) = &destination.out {
         write_fields(session, scene, solver, &course, place, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
     on_first_rank(session, || write_report(destination, &report, place))?;
     if solution.converged() {
-        Ok(printed)
+        Ok(())
     } else {
         let scene = args.scene.display();
         let what = match (solver.facts().inequalities, solution.steps.len()) {

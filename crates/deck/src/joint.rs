@@ -1,6 +1,6 @@
 //! Joints between the bodies of a deck: ties, contact pairs, surface interactions.
 
-use super::deck_line::{DeckLine, Note};
+use super::deck_line::DeckLine;
 
 /// A surface that a tie or a contact pair names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,10 +81,10 @@ pub struct ContactPair {
 pub enum Overclosure {
     /// Hard contact.
     Hard,
-    /// The slope, and the tension at large gaps.
+    /// Linear in the overclosure.
     Linear {
-        /// Pressure by overclosure; `None`: CalculiX takes 50 times Young's modulus of the first material.
-        slope: Option<f64>,
+        /// Pressure by overclosure.
+        slope: f64,
     },
     /// Exponential.
     Exponential {
@@ -111,6 +111,15 @@ pub struct Interaction {
     pub overclosure: Overclosure,
     /// Where it stands.
     pub place: DeckLine,
-    /// Why no contact pair may have it, such as friction.
-    pub(super) refused: Option<Note>,
+}
+
+/// A *FRICTION: the shear stress grows with the slip up to the coefficient times the pressure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// Coulomb's coefficient, positive.
+    pub coefficient: f64,
+    /// Shear stress by slip where surfaces stick; `None`: they do not slip there.
+    pub stick_slope: Option<f64>,
+    /// The shear stress that it cannot exceed.
+    pub limit: Option<f64>,
 }

@@ -20,11 +20,9 @@ pub enum KeywordTreatment {
     RefusedMesh(&'static str),
     /// It belongs to a material, and is refused if cells have this material.
     InMaterial(&'static str),
-    /// It belongs to a surface interaction, and is refused if contact pairs have this interaction.
-    InInteraction(&'static str),
 }
 
-use KeywordTreatment::{Ignored, InInteraction, InMaterial, Read, Refused, RefusedMesh};
+use KeywordTreatment::{Ignored, InMaterial, Read, Refused, RefusedMesh};
 
 const OUTPUT: KeywordTreatment = Ignored("it asks for output that is not written here");
 const HEAT: KeywordTreatment = Refused("it is a problem of heat, and only elasticity is solved");
@@ -64,7 +62,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("CFD", FLUID),
     ("CFLUX", HEAT),
     ("CHANGE CONTACT TYPE", CHANGES),
-    ("CHANGE FRICTION", CHANGES),
+    ("CHANGE FRICTION", Read),
     ("CHANGE MATERIAL", CHANGES),
     ("CHANGE PLASTIC", CHANGES),
     ("CHANGE SOLID SECTION", CHANGES),
@@ -163,10 +161,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("FLUID SECTION", FLUID),
     ("FLUID SECTIONS", FLUID),
     ("FREQUENCY", WAVES),
-    (
-        "FRICTION",
-        InInteraction("friction is not supported; remove the keyword to solve without"),
-    ),
+    ("FRICTION", Read),
     ("GAP", DISCRETE),
     ("GAP CONDUCTANCE", HEAT_ONLY),
     ("GAP HEAT GENERATION", HEAT_ONLY),

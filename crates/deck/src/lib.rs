@@ -19,7 +19,9 @@ mod step;
 pub use dat::{read_dat, write_dat, DatQuantity, DatTable, TableRow};
 pub use deck_line::{DeckLine, Files, Note};
 pub use element::{ElementModel, ElementType, Integration};
-pub use joint::{Adjust, ContactKind, ContactPair, Interaction, Overclosure, SurfaceName, Tie};
+pub use joint::{
+    Adjust, ContactKind, ContactPair, Friction, Interaction, Overclosure, SurfaceName, Tie,
+};
 pub use keywords::{KeywordTreatment, KEYWORDS};
 pub use model::{Deck, DeckEquation, DeckMaterial, Section, Term, Transform};
 pub use step::{

@@ -1,6 +1,7 @@
 //! The steps of a deck: supports, loads and what is asked for.
 
 use super::deck_line::DeckLine;
+use super::joint::Friction;
 
 /// A *STEP, with everything that holds at its end: amplitudes are evaluated, and what earlier steps leave is included.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,6 +20,8 @@ pub struct DeckStep {
     pub pressures: Vec<Pressure>,
     /// Forces on cells.
     pub body_loads: Vec<BodyLoad>,
+    /// The friction of each interaction; `None`: none.
+    pub friction: Vec<Option<Friction>>,
     /// The tables that are to be printed.
     pub prints: Vec<NodePrint>,
     /// The fields that are to be written: *NODE FILE, *EL FILE and their likes.

@@ -23,8 +23,8 @@ fn reasons_are_parts_of_a_sentence() {
             KeywordTreatment::Read => continue,
             KeywordTreatment::Ignored(r)
             | KeywordTreatment::Refused(r)
-            | KeywordTreatment::RefusedMesh(r) => r,
-            KeywordTreatment::InMaterial(r) | KeywordTreatment::InInteraction(r) => r,
+            | KeywordTreatment::RefusedMesh(r)
+            | KeywordTreatment::InMaterial(r) => r,
         };
         assert!(
             reason.len() > 10 && !reason.ends_with('.') && !reason.contains('\n'),

@@ -56,7 +56,7 @@ pub use mesh;
 pub use body::Body;
 pub use checked::Scene;
 pub use checkpoint::Checkpoint;
-pub use deck::DeckScenes;
+pub use deck::{DeckScenes, SlipHistory};
 pub use displaced::Displaced;
 pub use equilibrium::{Forces, Wrench};
 pub use geometry::interface::{BodyInterface, InterfaceShape, Link, SharedNode};

@@ -32,9 +32,8 @@ use parallel::exchange::{any, max_all, sum_all};
 
 /// Whether a problem has friction, or rows that give way. Collective.
 pub fn is_asked_for(method: &LinearMethod) -> bool {
-    let soft = !method.dual().stiffness.jump.compliance.is_empty();
-    let some = soft || !method.problem.friction.is_empty();
-    any(method.session.comm(), some)
+    let soft = method.dual().stiffness.jump.is_soft;
+    soft || any(method.session.comm(), !method.problem.friction.is_empty())
 }
 
 /// The strategy.

@@ -114,7 +114,8 @@ impl Stiffness {
 
     /// Replaces C; `None` gives the rows the compliance that they have of themselves.
     pub(super) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
-        let own = || Some(self.jump.compliance.clone()).filter(|c| !c.is_empty());
+        // All ranks have springs or none has: products with them are collective.
+        let own = || self.jump.is_soft.then(|| self.jump.compliance.clone());
         let compliance = compliance.or_else(own);
         self.springs = compliance.map(|c| Springs::new(&self.jump, c));
     }

@@ -1,133 +1,16 @@
-//! *SURFACE INTERACTION with its *SURFACE BEHAVIOR and *FRICTION, *TIE, *CONTACT PAIR, *CLEARANCE.
+//! *TIE, *CONTACT PAIR, *CLEARANCE.
 
 use super::base::DeckReader;
 use super::named::{increasing, SurfaceGroups};
 use super::params::Params;
 
 use crate::cards::{squeeze, Card};
-use crate::deck_line::{DeckLine, Note};
-use crate::joint::{Adjust, ContactKind, ContactPair, Interaction, Overclosure, SurfaceName, Tie};
-use crate::keywords::{verdict, KeywordTreatment};
+use crate::deck_line::DeckLine;
+use crate::joint::{Adjust, ContactKind, ContactPair, Overclosure, SurfaceName, Tie};
 use crate::numbers::clip;
 use base::Result;
 
 impl<'a> DeckReader<'a> {
-    /// Reads the interactions: a property belongs to the *SURFACE INTERACTION before it.
-    pub(super) fn read_interactions(&mut self) -> Result<()> {
-        let cards: &'a [Card] = &self.cards.cards;
-        let mut current = None;
-        for card in cards {
-            match (card.keyword.as_str(), verdict(&card.keyword)) {
-                ("SURFACEINTERACTION", _) => current = Some(self.interaction(card)?),
-                ("SURFACEBEHAVIOR", _) => {
-                    let overclosure = self.behavior(card)?;
-                    self.property_of(card, current)?.overclosure = overclosure;
-                }
-                (_, Some((_, KeywordTreatment::InInteraction(reason)))) => {
-                    let without = card.params.is_empty()
-                        && self.cards.rows(card).next().is_some_and(|row| {
-                            row.real(self.files, 0, "")
-                                .is_ok_and(|friction| friction == 0.0)
-                        });
-                    let note = Self::note(card, card.place, reason);
-                    let interaction = self.property_of(card, current)?;
-                    if !without {
-                        interaction.refused.get_or_insert(note);
-                    }
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
-    fn interaction(&mut self, card: &'a Card) -> Result<usize> {
-        let mut params = Params::new(card, self.files);
-        let name = params.required("NAME")?;
-        params.done()?;
-        let i = self.deck.interactions.len();
-        if self
-            .interactions
-            .insert(name.to_string(), i as u32)
-            .is_some()
-        {
-            return self.error(
-                card,
-                format!("the interaction {} is defined before", clip(name)),
-            );
-        }
-        self.deck.interactions.push(Interaction {
-            name: name.to_string(),
-            overclosure: Overclosure::Hard,
-            place: card.place,
-            refused: None,
-        });
-        Ok(i)
-    }
-
-    fn property_of(&mut self, card: &Card, current: Option<usize>) -> Result<&mut Interaction> {
-        match current {
-            Some(i) => Ok(&mut self.deck.interactions[i]),
-            None => self.error(card, "there is no *SURFACE INTERACTION before it"),
-        }
-    }
-
-    fn behavior(&self, card: &'a Card) -> Result<Overclosure> {
-        let mut params = Params::new(card, self.files);
-        let kind = params.value("PRESSURE-OVERCLOSURE").unwrap_or("HARD");
-        params.refuse(
-            &["NOSEPARATION"],
-            "surfaces may part again here; write *TIE",
-        )?;
-        params.skip(&["PENALTY", "DIRECT", "AUGMENTEDLAGRANGE"]);
-        let mut rows = self.cards.rows(card);
-        let slope = || match self.cards.rows(card).next() {
-            None => Ok(None),
-            Some(row) => row.real(self.files, 0, "a slope").map(Some),
-        };
-        let overclosure = match kind {
-            "HARD" => Overclosure::Hard,
-            "LINEAR" => Overclosure::Linear { slope: slope()? },
-            "TIED" => Overclosure::Tied { slope: slope()? },
-            "EXPONENTIAL" => match rows.next() {
-                None => return self.error(card, "its line of data is missing"),
-                Some(row) => Overclosure::Exponential {
-                    c0: row.real(self.files, 0, "a gap")?,
-                    p0: row.real(self.files, 1, "a pressure")?,
-                },
-            },
-            "TABULAR" => {
-                let table: Vec<(f64, f64)> = rows
-                    .map(|row| {
-                        let pressure = row.real(self.files, 0, "a pressure")?;
-                        Ok((pressure, row.real(self.files, 1, "an overclosure")?))
-                    })
-                    .collect::<Result<_>>()?;
-                if table.is_empty() {
-                    return self.error(card, "its table is missing");
-                }
-                Overclosure::Tabular(table)
-            }
-            _ => {
-                let kind = clip(kind);
-                return params.error(format!("PRESSURE-OVERCLOSURE={kind} is not supported"));
-            }
-        };
-        params.done()?;
-        let positive = match &overclosure {
-            Overclosure::Linear { slope } | Overclosure::Tied { slope } => {
-                slope.is_none_or(|s| s > 0.0)
-            }
-            Overclosure::Exponential { c0, p0 } => *c0 > 0.0 && *p0 >= 0.0,
-            Overclosure::Hard | Overclosure::Tabular(_) => true,
-        };
-        if positive {
-            Ok(overclosure)
-        } else {
-            self.error(card, "its numbers must be positive")
-        }
-    }
-
     /// The surface of that name; a slave may be of nodes, and then a surface of nodes goes first.
     fn surface_name(
         &self,
@@ -229,20 +112,11 @@ impl<'a> DeckReader<'a> {
         };
         let found = &self.deck.interactions[interaction as usize];
         let tied = matches!(found.overclosure, Overclosure::Tied { .. });
-        match &found.refused {
-            // The stick slope of tied surfaces is a penalty, not friction.
-            Some(Note {
-                keyword,
-                place,
-                reason,
-            }) if !tied => {
-                return Err(self.files.error(*place, format!("{keyword}: {reason}")));
-            }
-            _ => {}
-        }
         let instead = match found.overclosure {
-            Overclosure::Hard => None,
-            Overclosure::Linear { .. } => Some("LINEAR pressure is replaced by hard contact"),
+            Overclosure::Linear { .. } if kind == ContactKind::NodeToSurface => {
+                Some("LINEAR pressure has no tension where sides are apart (sigma_inf of CalculiX counts as 0)")
+            }
+            Overclosure::Hard | Overclosure::Linear { .. } => None,
             Overclosure::Exponential { .. } => {
                 Some("EXPONENTIAL pressure is replaced by hard contact")
             }

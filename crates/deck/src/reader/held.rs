@@ -1,6 +1,7 @@
 //! Definitions that hold until they are replaced: supports, loads, requests; and the amplitudes of loads.
 
 use crate::deck_line::DeckLine;
+use crate::joint::Friction;
 use crate::step::{BodyLoadKind, FieldRequest, NodePrint};
 use std::collections::BTreeMap;
 
@@ -81,6 +82,10 @@ pub(super) struct DeckState {
     pub bodies: Vec<HeldCellLoad>,
     pub prints: Vec<NodePrint>,
     pub fields: Vec<FieldRequest>,
+    /// By interaction.
+    pub friction: Vec<Option<Friction>>,
+    /// The interaction that the *CHANGE FRICTION before names, until its *FRICTION has come.
+    pub changing: Option<(u32, DeckLine)>,
 }
 
 const DIFFERENT: &str = "a load is added to another of the same step that has another amplitude";

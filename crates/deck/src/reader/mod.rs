@@ -6,6 +6,7 @@ mod base;
 mod contact;
 mod held;
 mod ids;
+mod interactions;
 mod loads;
 mod materials;
 mod named;
@@ -67,6 +68,8 @@ impl<'a> DeckReader<'a> {
             "RESTART" => self.restart(card),
             "STEP" => self.step(card),
             "STATIC" => self.static_step(card),
+            "CHANGEFRICTION" => self.change_friction(card),
+            "FRICTION" => self.friction_in_step(card),
             "ENDSTEP" => self.end_step(card),
             "BOUNDARY" => self.boundary(card),
             "CLOAD" => self.cload(card),

@@ -79,6 +79,12 @@ impl<'a> DeckReader<'a> {
             if duration == 0.0 {
                 duration = 1.0;
             }
+            let increment = row.real_or(self.files, 0, duration, "a time")?;
+            let friction = self.state.friction.iter().any(Option::is_some);
+            if friction && increment > 0.0 && increment < duration {
+                let reason = "a step with friction goes to its end in one increment";
+                self.deck.replaced.push(Self::note(card, row.place, reason));
+            }
         }
         let start = start.unwrap_or(self.state.time) - if reset { duration } else { 0.0 };
         self.state.procedure = Some((duration, start + duration));
@@ -93,8 +99,10 @@ impl<'a> DeckReader<'a> {
         let Some((duration, time)) = self.state.procedure.take() else {
             return Err(self.files.error(place, "*STEP: the step has no *STATIC"));
         };
+        self.no_change_pending()?;
         let state = &self.state;
-        let entries = state.supports.len()
+        let entries = state.friction.len()
+            + state.supports.len()
             + state.forces.len()
             + state.pressures.len()
             + state
@@ -119,6 +127,7 @@ impl<'a> DeckReader<'a> {
             place,
             duration,
             time,
+            friction: state.friction.clone(),
             prints: state.prints.clone(),
             fields: state.fields.clone(),
             ..DeckStep::default()

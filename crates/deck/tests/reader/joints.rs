@@ -1,7 +1,7 @@
 //! Contact, ties and equations.
 
-use super::{bad, good, CUBES, REST, STEP};
-use crate::{read, Adjust, ContactKind, Overclosure};
+use super::{bad, good};
+use crate::{Adjust, ContactKind, Overclosure};
 use mesh::Members;
 
 #[test]
@@ -26,14 +26,8 @@ fn contact_and_ties() {
         (&contact.adjust, contact.clearance),
         (&Adjust::Within(0.01), Some(-0.1))
     );
-    assert_eq!(
-        deck.interactions[0].overclosure,
-        Overclosure::Linear { slope: Some(1e7) }
-    );
-    assert_eq!(deck.replaced.len(), 2);
-    assert!(deck.replaced[0]
-        .reason
-        .contains("LINEAR pressure is replaced by hard contact"));
+    // Its nodes may slide from face to face in CalculiX.
+    assert_eq!(deck.replaced.len(), 1);
 
     let nodes =
         "*CONTACT PAIR,INTERACTION=I,TYPE=NODE TO SURFACE,SMALL SLIDING\nR,L\n*TIE,NAME=T\nR,L\n";
@@ -49,18 +43,9 @@ fn contact_and_ties() {
     let tie = &deck.ties[0];
     assert!(tie.slave.nodes && !tie.master.nodes && tie.adjust && tie.tolerance.is_none());
 
-    let rough = "*FRICTION\n.2,1e4\n";
     let refused = |more: &str| bad(&format!("{surfaces}{more}"), "");
-    assert!(refused(&format!("{rough}{pair}")).starts_with("*FRICTION: friction is not supported"));
-    assert!(read(
-        "a",
-        format!("{CUBES}{surfaces}{rough}{REST}{STEP}").as_bytes(),
-        &|_| Ok(vec![])
-    )
-    .is_ok());
-    good(&format!("{surfaces}*FRICTION\n0.,1e4\n{pair}"), "");
     let tied = "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=TIED\n1.e7\n";
-    let deck = good(&format!("{surfaces}{tied}{rough}{pair}"), "");
+    let deck = good(&format!("{surfaces}{tied}*FRICTION\n.2,1e4\n{pair}"), "");
     assert!(deck.replaced[0].reason.contains("replaced by a tie"));
     assert_eq!(
         refused("*CONTACT PAIR,INTERACTION=X\nR,L\n"),
@@ -89,10 +74,6 @@ fn contact_and_ties() {
     let only_nodes = "*SURFACE,NAME=P,TYPE=NODE\n1\n*TIE\nL,P\n";
     assert!(refused(only_nodes).starts_with("the surface P consists of nodes"));
     assert!(refused(gap).ends_with("there is no contact pair of slave R and master L"));
-    assert!(
-        refused("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n-1.\n")
-            .ends_with("must be positive")
-    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Decks as they are read; the sentences that refuse them.
 
 mod bodies;
+mod friction;
 mod joints;
 mod sets;
 mod steps;

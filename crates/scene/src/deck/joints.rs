@@ -2,6 +2,7 @@
 
 use super::bodies::along_coordinates;
 use super::numbers::DeckNumbering;
+use crate::model::friction::{ContactLaw, FrictionSpec};
 use crate::model::joints::{ContactSpec, EquationSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use base::{Location, Result};
@@ -76,12 +77,13 @@ pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
     out
 }
 
-/// The contact pairs that do not tie; soft laws are hard here. The masters of those that are `exchanged` carry the
+/// The contact pairs that do not tie, with their laws in a step. The masters of those that are `exchanged` carry the
 /// multipliers.
 pub(super) fn contacts(
     deck: &Deck,
     numbers: &DeckNumbering,
     exchanged: &[Option<f64>],
+    step: usize,
 ) -> Result<Vec<ContactSpec>> {
     let mut out = Vec::new();
     for (pair, exchanged) in deck.contacts.iter().zip(exchanged) {
@@ -113,12 +115,68 @@ pub(super) fn contacts(
                 adjust
             },
             adjusted,
-            law: Default::default(),
+            law: law(deck, pair, step)?,
             ramp: None,
             location: at(deck, pair.place),
         });
     }
     Ok(out)
+}
+
+/// The law of a contact pair in a step; EXPONENTIAL and TABULAR pressures are hard here.
+fn law(deck: &Deck, pair: &ContactPair, step: usize) -> Result<ContactLaw> {
+    let at = pair.interaction as usize;
+    let friction = deck.steps[step].friction.get(at).and_then(Option::as_ref);
+    let slope = match deck.interactions[at].overclosure {
+        Overclosure::Linear { slope } => Some(slope),
+        _ => None,
+    };
+    let stick = friction.and_then(|f| f.stick_slope);
+    let limit = friction.and_then(|f| f.limit);
+    // Forces of plane bodies are those of their whole thickness.
+    let thickness = match [slope, stick, limit] {
+        [None, None, None] => 1.0,
+        _ => thickness(deck, pair)?,
+    };
+    let stress = |value: f64| Profile::constant(value * thickness);
+    Ok(ContactLaw {
+        friction: friction.map(|f| FrictionSpec::Coulomb {
+            coefficient: Profile::constant(f.coefficient),
+            limit: limit.map(stress),
+        }),
+        stiffness: slope.map(stress),
+        stick_stiffness: stick.map(stress),
+    })
+}
+
+/// The thickness of the elements at the slave of a contact pair; 1 in space.
+fn thickness(deck: &Deck, pair: &ContactPair) -> Result<f64> {
+    if deck.dim() == 3 {
+        return Ok(1.0);
+    }
+    let of_cell = |c: usize| deck.sections[deck.cell_section[c] as usize].thickness;
+    let cells = &deck.mesh.cells;
+    let all: Vec<f64> = match &deck.mesh.groups[pair.slave.group as usize].members {
+        Members::Sides(sides) => sides.iter().map(|side| of_cell(side.0 as usize)).collect(),
+        Members::Nodes(nodes) => {
+            let nodes: HashSet<u32> = nodes.iter().copied().collect();
+            let own = |c: &usize| cells.nodes(*c).iter().any(|k| nodes.contains(k));
+            (0..cells.len()).filter(own).map(of_cell).collect()
+        }
+        Members::Cells { .. } => Vec::new(),
+    };
+    let first = all.first().copied().unwrap_or(1.0);
+    match all.iter().find(|&&t| t != first) {
+        None => Ok(first),
+        Some(other) => Err(deck.files.error(
+            pair.place,
+            format!(
+                "the slave surface {} has elements of thickness {first} and {other} (one was expected beside soft \
+                 contact or friction with a stick slope)",
+                pair.slave.name
+            ),
+        )),
+    }
 }
 
 /// The nodes of the slave that a contact pair moves onto its master: those of a set.

@@ -1,13 +1,15 @@
 //! Scenes from decks of Abaqus or CalculiX.
 //!
 //! A connected part of a deck's mesh is a body. Nothing joins bodies but *TIE, *CONTACT PAIR and equations. A scene
-//! describes one step of the deck at its end; steps of a linear analysis do not depend on each other.
+//! describes one step of the deck at its end. Steps of a linear analysis do not depend on each other, but for the slip
+//! of sides with friction ([`SlipHistory`]).
 
 mod bodies;
 mod carriers;
 mod element;
 mod joints;
 mod numbers;
+mod slip_history;
 mod tied;
 mod torn;
 
@@ -24,6 +26,8 @@ use elements::form::{Form, Physics};
 use fetifeti::problem::BodyNode;
 use mesh::bytes;
 use numbers::DeckNumbering;
+
+pub use slip_history::SlipHistory;
 
 /// The part of a force on a ring that CalculiX prints: that on one of the sectors of 2° of which it makes the ring.
 const SECTOR: f64 = 1.0 / 180.0;
@@ -128,7 +132,17 @@ impl DeckScenes {
         self.deck.steps.len()
     }
 
-    /// The scene of step `step`.
+    /// The scene of step `step` after what earlier steps have left.
+    ///
+    /// # Errors
+    /// As [`DeckScenes::scene`].
+    pub fn scene_after(&self, slid: &SlipHistory, title: &str, step: usize) -> Result<Scene> {
+        let mut scene = self.scene(title, step)?;
+        slid.enter(&mut scene);
+        Ok(scene)
+    }
+
+    /// The scene of step `step`, as if it were the first one.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for what a scene refuses, such as sides that do not match.
@@ -164,7 +178,7 @@ impl DeckScenes {
             form,
             default: ByDefault::Free,
             ties: joints::ties(deck),
-            contacts: joints::contacts(deck, numbers, &self.exchanged)?,
+            contacts: joints::contacts(deck, numbers, &self.exchanged, step)?,
             equations,
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)
