@@ -28,9 +28,8 @@ use parallel::exchange::{any, max_all, sum_all};
 
 /// Whether a problem has friction, or rows that give way. Collective.
 pub fn is_asked_for(method: &LinearMethod) -> bool {
-    let soft = !method.dual().stiffness.jump.compliance.is_empty();
-    let some = soft || !method.problem.friction.is_empty();
-    any(method.session.comm(), some)
+    let soft = method.dual().stiffness.jump.soft;
+    soft || any(method.session.comm(), !method.problem.friction.is_empty())
 }
 
 /// The strategy.
@@ -122,8 +121,10 @@ impl<'a> Friction<'a> {
 
     /// Puts springs into rows, beside the compliance that they have of themselves. Collective.
     fn soften(&mut self, springs: Vec<f64>) {
-        let some = any(self.method.session.comm(), springs.iter().any(|s| *s > 0.0));
-        let was = !self.inner.springs.is_empty();
+        let comm = self.method.session.comm();
+        let some = any(comm, springs.iter().any(|s| *s > 0.0));
+        // A rank without rows has an empty list in either case.
+        let was = any(comm, !self.inner.springs.is_empty());
         if !some && !was {
             return;
         }

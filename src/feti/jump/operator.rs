@@ -20,8 +20,8 @@ use crate::feti::interface::entities::Average;
 use crate::feti::interface::location::Locations;
 use crate::feti::interface::sharing::{Copy, DofSharing};
 use crate::feti::jump::blocks;
-use crate::substructures::{Law, Problem, Row};
-use parallel::exchange::{exchange, offsets, total};
+use crate::substructures::{Law, Problem};
+use parallel::exchange::{any, exchange, offsets, total};
 
 /// The dual space and its operators.
 #[derive(Debug, Default)]
@@ -47,8 +47,10 @@ pub struct Jump {
     pub held: Vec<f64>,
     /// The law of each owned row; rows of B_loc are ties.
     pub law: Vec<Law>,
-    /// C of each owned row; empty if all are rigid.
+    /// C of each owned row; empty if all are rigid, on every rank.
     pub compliance: Vec<f64>,
+    /// Whether some row gives way, on any rank.
+    pub soft: bool,
     /// Z⁰ on the owned rows: whether the row holds to begin with.
     pub initial: Vec<bool>,
     /// Z^k on the owned rows: whether the row holds.
@@ -149,6 +151,7 @@ impl Jump {
 
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
         let zeros = std::iter::repeat_n(0.0, n_owned_local);
+        let soft = any(comm, rows.iter().any(|r| r.compliance > 0.0));
         let ties = std::iter::repeat_n(Law::Tie, n_owned_local);
         let numbered = (0..).zip(&blocks);
         let block_of = numbered.flat_map(|(k, block)| block.rows.clone().map(move |_| k));
@@ -159,9 +162,13 @@ impl Jump {
             n_global,
             n_owned_local,
             n_local: total(comm, n_owned_local as f64) as usize,
-            gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
+            gap: zeros.clone().chain(rows.iter().map(|r| r.gap)).collect(),
             law: ties.chain(rows.iter().map(|r| r.law)).collect(),
-            compliance: compliance(n_owned_local, &rows),
+            compliance: match soft {
+                true => zeros.chain(rows.iter().map(|r| r.compliance)).collect(),
+                false => Vec::new(),
+            },
+            soft,
             initial: active.clone(),
             averages: sharing.averages.clone(),
             active,
@@ -305,15 +312,6 @@ impl Jump {
             position[found.expect("a row's dof is an interface dof")].1
         });
     }
-}
-
-/// C of `inside` rows of B_loc and of these rows; empty if all are rigid.
-fn compliance(inside: usize, rows: &[&Row]) -> Vec<f64> {
-    if rows.iter().all(|r| r.compliance == 0.0) {
-        return Vec::new();
-    }
-    let zeros = std::iter::repeat_n(0.0, inside);
-    zeros.chain(rows.iter().map(|r| r.compliance)).collect()
 }
 
 /// The dual dofs shared inside a body whose lowest subdomain lives on this rank, in a reproducible order, and the start

@@ -114,7 +114,7 @@ impl Stiffness {
 
     /// Replaces C; `None` gives the rows the compliance that they have of themselves.
     pub(super) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
-        let own = || Some(self.jump.compliance.clone()).filter(|c| !c.is_empty());
+        let own = || self.jump.soft.then(|| self.jump.compliance.clone());
         let compliance = compliance.or_else(own);
         self.springs = compliance.map(|c| Springs::new(&self.jump, c));
     }
