@@ -13,7 +13,7 @@ use crate::feti::{
 };
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::substructures::{idle, Problem, Row, SolvedRow};
+use crate::substructures::{idle, FrictionNode, Problem, Row, SolvedRow};
 use crate::Result;
 use parallel::exchange::any;
 use petsc::{cite, Ksp, LogStage, Session};
@@ -222,18 +222,19 @@ impl FetiFeti {
         self.method.set_loads(loads, gaps);
     }
 
-    /// Replaces the rows between bodies that this rank provides. Subdomains whose interface stays the same stay
-    /// factored; jump operator, coarse problems and preconditioner are set up anew. Collective.
+    /// Replaces the rows between bodies that this rank provides, and the nodes with friction among them. Subdomains
+    /// whose interface stays the same stay factored; jump operator, coarse problems and preconditioner are set up anew.
+    /// Collective.
     ///
     /// # Errors
     /// As [`FetiFeti::new`]; the solver then still has the old rows and works with them.
-    pub fn set_rows(&mut self, rows: Vec<Row>) -> Result<()> {
+    pub fn set_rows(&mut self, rows: Vec<Row>, friction: Vec<FrictionNode>) -> Result<()> {
         let _staged = self.setup_stage.scope()?;
-        self.method.set_rows(rows)
+        self.method.set_rows(rows, friction)
     }
 
-    /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies
-    /// if there are some. Patterns are not analysed again if
+    /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies,
+    /// and nodes with friction among them, if there are some. Patterns are not analysed again if
     /// [`MethodSettings::keeps_analyses`](crate::settings::MethodSettings::keeps_analyses) was set. `None` if a
     /// subdomain has motions without energy that it did not have: a new solver is to be made, with primal dofs for
     /// them. Collective.
@@ -246,7 +247,7 @@ impl FetiFeti {
     pub fn renewed(
         self,
         numbers: Vec<Numbers>,
-        rows: Option<Vec<Row>>,
+        rows: Option<(Vec<Row>, Vec<FrictionNode>)>,
     ) -> Result<Option<FetiFeti>> {
         let FetiFeti {
             method,

@@ -9,6 +9,9 @@ module fetifeti
   implicit none
 
   integer(c_int), parameter :: FETIFETI_EQUALITY = 0, FETIFETI_INEQUALITY = 1
+  integer(c_int), parameter :: FETIFETI_OPEN = 0, FETIFETI_HOLDS = 1, FETIFETI_STICK = 2, FETIFETI_SLIP = 3
+  ! PETSC_INFINITY
+  real(c_double), parameter :: FETIFETI_INFINITY = huge(1d0) / 4
 
   type, bind(C) :: FetiFetiContactStep
     integer(c_int) :: step, active, entered, left, wrong, iterations
@@ -164,6 +167,36 @@ module fetifeti
       real(c_double), intent(in), optional :: gap(*)
       integer(c_int) :: ierr
     end function
+    ! Arrays that are left out: no row has that part of a law.
+    function FetiFetiSetContactLaw(ff, n, friction, limit, tresca, stiffness, stick_stiffness) &
+        bind(C, name="FetiFetiSetContactLaw") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      real(c_double), intent(in), optional :: friction(*), limit(*), tresca(*), stiffness(*), stick_stiffness(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetContactSlip(ff, n, dim, slip) bind(C, name="FetiFetiSetContactSlip") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n, dim
+      real(c_double), intent(in), optional :: slip(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiNextContactStep(ff) bind(C, name="FetiFetiNextContactStep") result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetContactFriction(ff, n, dim, force, slip, state) &
+        bind(C, name="FetiFetiGetContactFriction") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n, dim
+      real(c_double), optional :: force(*), slip(*)
+      integer(c_int), optional :: state(*)
+      integer(c_int) :: ierr
+    end function
     function FetiFetiAddSurface(ff, matrix, dim, components, n, dofs, coords, nfaces, start, nodes, surface) &
         bind(C, name="FetiFetiAddSurface") result(ierr)
       import :: c_int, c_ptr, c_double
@@ -185,6 +218,14 @@ module fetifeti
       integer(c_int), intent(out) :: mortar
       integer(c_int) :: ierr
     end function
+    function FetiFetiSetMortarLaw(ff, mortar, friction, limit, tresca, stiffness, stick_stiffness) &
+        bind(C, name="FetiFetiSetMortarLaw") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: mortar
+      real(c_double), value :: friction, limit, tresca, stiffness, stick_stiffness
+      integer(c_int) :: ierr
+    end function
     function FetiFetiGetMortar(ff, mortar, n, lambda, pressure, gap, state) &
         bind(C, name="FetiFetiGetMortar") result(ierr)
       import :: c_int, c_ptr, c_double
@@ -192,6 +233,14 @@ module fetifeti
       integer(c_int), value :: mortar, n
       real(c_double), optional :: lambda(*), pressure(*), gap(*)
       integer(c_int), optional :: state(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetMortarFriction(ff, mortar, n, force, shear, slip) &
+        bind(C, name="FetiFetiGetMortarFriction") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: mortar, n
+      real(c_double), optional :: force(*), shear(*), slip(*)
       integer(c_int) :: ierr
     end function
     function FetiFetiResetMortar(ff) bind(C, name="FetiFetiResetMortar") result(ierr)

@@ -51,6 +51,24 @@ E*/
 #define FETIFETI_EQUALITY   0
 #define FETIFETI_INEQUALITY 1
 
+/*E
+   FetiFetiRowState - The state of a row of contact after a solve
+
+   Level: beginner
+
+   Values:
++  FETIFETI_OPEN  - the sides are apart
+.  FETIFETI_HOLDS - the row holds: an equation, or contact without a force of friction
+.  FETIFETI_STICK - in contact, and the sides stick to each other
+-  FETIFETI_SLIP  - the sides slide, with the largest force of friction that the law allows
+
+.seealso: `FetiFetiGetContactFriction()`, `FetiFetiGetMortar()`
+E*/
+#define FETIFETI_OPEN  0
+#define FETIFETI_HOLDS 1
+#define FETIFETI_STICK 2
+#define FETIFETI_SLIP  3
+
 /*@C
    FetiFetiInitializePackage - Registers the KSP type "fetifeti" in a program that links with the library
 
@@ -551,7 +569,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
    is at the same node as that of an earlier row of this rank starts from its multiplier.
 
 .seealso: `FetiFetiSetContactRowsByMatrix()`, `FetiFetiSetContactPairs()`, `FetiFetiSetContactGaps()`,
-          `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
+          `FetiFetiSetContactLaw()`, `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[],
                                                    const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
@@ -634,10 +652,131 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactGaps(FetiFeti ff, PetscInt n, cons
 
    Where normals have several components use FetiFetiSetContactRows().
 
-.seealso: `FetiFetiAddMatIS()`, `FetiFetiSetContactRows()`, `FetiFetiGetMultipliers()`
+.seealso: `FetiFetiAddMatIS()`, `FetiFetiSetContactRows()`, `FetiFetiSetContactLaw()`, `FetiFetiGetMultipliers()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactPairs(FetiFeti ff, PetscInt a, IS first, PetscInt b, IS second,
                                                     const PetscReal gap[], PetscInt kind);
+
+/*@
+   FetiFetiSetContactLaw - Gives friction, and stiffnesses of soft contact, to the rows that this rank gave
+
+   Not Collective
+
+   Input Parameters:
++  ff              - the solver
+.  n               - how many rows this rank gave, as for FetiFetiGetMultipliers()
+.  friction        - Coulomb's coefficient of each row, 0 without friction; NULL: none has friction by this law
+.  limit           - the largest force of friction beside `friction`, PETSC_INFINITY where there is no limit; NULL: none
+.  tresca          - a given bound of the force of friction, in place of Coulomb's, whether or not the row touches; 0
+                     without friction; NULL: none has
+.  stiffness       - the multiplier over the overclosure of soft contact, positive; PETSC_INFINITY where contact is
+                     hard; NULL: all are hard
+-  stick_stiffness - the force of friction over the slip while the sides stick, positive; PETSC_INFINITY where slip is
+                     never elastic; NULL: nowhere
+
+   Level: beginner
+
+   Notes:
+   Rows are those given so far, by FetiFetiSetContactRows() and FetiFetiSetContactPairs() in the order of
+   FetiFetiGetMultipliers(). They get this law in place of the one that they had; rows that are given later have none.
+   Laws belong to inequalities: entries at equations are those of no law (0, PETSC_INFINITY).
+
+   Friction needs displacements: nodes of 2 or 3 consecutive unknowns, the block size, in the numbering of all unknowns.
+   The coefficients of a row at one of its nodes give the normal, which is that of all its nodes. The directions along
+   which the sides slide are perpendicular to it; they are found here, and forces of friction and slips are vectors in
+   the components of the nodes: FetiFetiGetContactFriction().
+
+   Limits, bounds and stiffnesses are those of the row, as its multiplier is: with a normal of length 1 forces, and
+   forces per length. What is known per area is multiplied by the area of the node.
+
+   In space no other row may lead to the nodes of a row with friction; FetiFetiSolve() says so otherwise.
+
+   A body that nothing but friction beyond its bound holds is an error of FetiFetiSolve(), which names it.
+
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`, `FetiFetiGetContactFriction()`,
+          `FetiFetiNextContactStep()`, `FetiFetiSetMortarLaw()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactLaw(FetiFeti ff, PetscInt n, const PetscReal friction[],
+                                                  const PetscReal limit[], const PetscReal tresca[],
+                                                  const PetscReal stiffness[], const PetscReal stick_stiffness[]);
+
+/*@
+   FetiFetiSetContactSlip - Says where the sides of rows with friction stand without a slip
+
+   Not Collective
+
+   Input Parameters:
++  ff   - the solver
+.  n    - how many rows this rank gave, as for FetiFetiGetMultipliers()
+.  dim  - components of a vector: 2 or 3, the block size
+-  slip - for each row the displacement of the first side from the second one that counts as none, length n * dim; NULL:
+          zero
+
+   Level: intermediate
+
+   Notes:
+   The slip of a solve is B_t u - B_t s, with s as it is given here and B_t the row along the sides; the part of s along
+   the normal does not count. The first side of a row is that of its first term.
+
+   New rows have s = 0. FetiFetiNextContactStep() adds the slip of the last solve to s, this function replaces s. An
+   obstacle or a belt that moves by d in a load step drags the sides along: keep s, add d and the slip of
+   FetiFetiGetContactFriction() to it before each step, and give it here in place of FetiFetiNextContactStep(). Where
+   solves are for increments of displacements, as in Newton's method, s is what remains, as gaps are: s less the
+   displacement of the first side from the second one so far. Nothing is set up again.
+
+.seealso: `FetiFetiNextContactStep()`, `FetiFetiGetContactFriction()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactSlip(FetiFeti ff, PetscInt n, PetscInt dim, const PetscReal slip[]);
+
+/*@
+   FetiFetiNextContactStep - Begins a load step: slips count from where the last solve has ended
+
+   Logically Collective
+
+   Input Parameter:
+.  ff - the solver, after FetiFetiSolve()
+
+   Level: beginner
+
+   Notes:
+   Friction depends on the way, which load steps follow: solve, take results, call this, set loads, solve. Solves
+   without it in between are of one and the same load step. Rows keep their slips as long as they are not given anew,
+   and so do mortars until FetiFetiResetMortar(). For new rows at the same places add up what
+   FetiFetiGetContactFriction() returns, and give it by FetiFetiSetContactSlip().
+
+   A second call after the same solve has no effect. Nothing is set up again.
+
+.seealso: `FetiFetiSolve()`, `FetiFetiSetContactLaw()`, `FetiFetiSetContactSlip()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiNextContactStep(FetiFeti ff);
+
+/*@
+   FetiFetiGetContactFriction - Gets forces of friction, slips and states of the rows that this rank gave
+
+   Not Collective
+
+   Input Parameters:
++  ff  - the solver
+.  n   - how many rows this rank gave, as for FetiFetiGetMultipliers()
+-  dim - components of a vector, the block size
+
+   Output Parameters:
++  force - for each row the force with which its first side, that of its first term, drags the other one along, in
+           components, length n * dim; NULL: not wanted
+.  slip  - for each row how far the first side has slid on the other one since the beginning of the load step, without
+           the elastic part of a stick stiffness, length n * dim; NULL: not wanted
+-  state - FETIFETI_OPEN, FETIFETI_HOLDS, FETIFETI_STICK or FETIFETI_SLIP; NULL: not wanted
+
+   Level: beginner
+
+   Note:
+   Vectors are zero for rows without friction. Forces are in the units of multipliers and slips in those of gaps. The
+   first side itself gets minus the force, as it gets minus lambda along the normal.
+
+.seealso: `FetiFetiSetContactLaw()`, `FetiFetiNextContactStep()`, `FetiFetiGetMultipliers()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetContactFriction(FetiFeti ff, PetscInt n, PetscInt dim, PetscReal force[],
+                                                       PetscReal slip[], PetscInt state[]);
 
 /*@
    FetiFetiAddSurface - Gives a surface of a body by nodes and faces, for FetiFetiAddMortar()
@@ -692,7 +831,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddSurface(FetiFeti ff, PetscInt matrix, Pet
 +  ff      - the solver
 .  first   - the surface that carries the multipliers, the finer or the softer one by preference
 .  second  - the other surface
-.  kind    - FETIFETI_EQUALITY: a tie, the displacements of both are equal; FETIFETI_INEQUALITY: contact, no friction
+.  kind    - FETIFETI_EQUALITY: a tie, the displacements of both are equal; FETIFETI_INEQUALITY: contact, whose
+             friction FetiFetiSetMortarLaw() gives
 .  reach   - how far along the normals of the first surface the second one may be; 0: a few edges
 .  adjust  - initial distances and overlaps up to this one count as none; nodes are not moved
 .  gap     - a clearance in addition to the distance of the places, negative for an interference
@@ -725,11 +865,42 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddSurface(FetiFeti ff, PetscInt matrix, Pet
    Rows are those of the places at this call: for large sliding call FetiFetiResetMortar() and add surfaces with new
    places.
 
-.seealso: `FetiFetiAddSurface()`, `FetiFetiGetMortar()`, `FetiFetiResetMortar()`, `FetiFetiSetContactRows()`
+.seealso: `FetiFetiAddSurface()`, `FetiFetiSetMortarLaw()`, `FetiFetiGetMortar()`, `FetiFetiResetMortar()`,
+          `FetiFetiSetContactRows()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, PetscInt second, PetscInt kind,
                                               PetscReal reach, PetscReal adjust, PetscReal gap, const PetscReal gaps[],
                                               const PetscInt without[], PetscInt *mortar);
+
+/*@
+   FetiFetiSetMortarLaw - Gives friction, and stiffnesses of soft contact, to a mortar in contact
+
+   Collective
+
+   Input Parameters:
++  ff              - the solver
+.  mortar          - number of the mortar
+.  friction        - Coulomb's coefficient; 0 without it
+.  limit           - the largest shear stress beside `friction`; PETSC_INFINITY: no limit
+.  tresca          - a given bound of the shear stress, in place of Coulomb's, whether or not the sides touch; 0 without
+                     it
+.  stiffness       - the pressure over the overclosure of soft contact, positive; PETSC_INFINITY: contact is hard
+-  stick_stiffness - the shear stress over the slip while the sides stick, positive; PETSC_INFINITY: slip is never
+                     elastic
+
+   Level: beginner
+
+   Notes:
+   All is the same on all ranks, and takes the place of the law that the mortar had. Bounds and stiffnesses are per
+   area: each node has its part by the area of its function.
+
+   Friction is solved in the plane, in space only where the nodes of both surfaces lie opposite each other:
+   FetiFetiSolve() refuses rows that share nodes there.
+
+.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMortarFriction()`, `FetiFetiNextContactStep()`, `FetiFetiSetContactLaw()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetMortarLaw(FetiFeti ff, PetscInt mortar, PetscReal friction, PetscReal limit,
+                                                 PetscReal tresca, PetscReal stiffness, PetscReal stick_stiffness);
 
 /*@
    FetiFetiGetMortar - Gets the result of a mortar at the nodes of its first surface
@@ -746,7 +917,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, Petsc
               not wanted
 .  pressure - lambda over the area of the node's function: a pressure (a traction in ties)
 .  gap      - what remains of the gap; PETSC_INFINITY at a node without a multiplier
--  state    - 1 where the row holds, 0 where the sides are apart, -1 at a node without a multiplier
+-  state    - FETIFETI_OPEN, FETIFETI_HOLDS, FETIFETI_STICK or FETIFETI_SLIP; -1 at a node without a multiplier
 
    Level: beginner
 
@@ -755,10 +926,38 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, Petsc
    component. Nodes without multipliers have 0. Every rank that gave a node gets its result. In the plane areas are
    lengths: lambda is a force per unit of thickness.
 
-.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMultipliers()`
+.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMortarFriction()`, `FetiFetiGetMultipliers()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiGetMortar(FetiFeti ff, PetscInt mortar, PetscInt n, PetscReal lambda[],
                                               PetscReal pressure[], PetscReal gap[], PetscInt state[]);
+
+/*@
+   FetiFetiGetMortarFriction - Gets forces of friction and slips of a mortar at the nodes of its first surface
+
+   Not Collective
+
+   Input Parameters:
++  ff     - the solver
+.  mortar - number of the mortar
+-  n      - nodes that this rank gave of the first surface
+
+   Output Parameters:
++  force - the force with which the first surface drags the second one along at each node, in components; NULL: not
+           wanted
+.  shear - the force over the area of the node's function, a shear stress, in components; NULL: not wanted
+-  slip  - how far the first surface has slid on the second one since the beginning of the load step, without the
+           elastic part of a stick stiffness, in components; NULL: not wanted
+
+   Level: beginner
+
+   Note:
+   A vector for each node, in the order of FetiFetiAddSurface(), zero without friction. States are those of
+   FetiFetiGetMortar().
+
+.seealso: `FetiFetiSetMortarLaw()`, `FetiFetiGetMortar()`, `FetiFetiNextContactStep()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetMortarFriction(FetiFeti ff, PetscInt mortar, PetscInt n, PetscReal force[],
+                                                      PetscReal shear[], PetscReal slip[]);
 
 /*@
    FetiFetiResetMortar - Forgets surfaces and mortars; everything else stays
@@ -787,7 +986,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiResetMortar(FetiFeti ff);
 .  active     - rows that held, over all ranks: inequalities and equations
 .  entered    - inequalities that hold now and did not before
 .  left       - inequalities that held and do not now
-.  wrong      - inequalities that are violated at the end of the step, or hold with a multiplier that pulls
+.  wrong      - inequalities that are violated at the end of the step, or hold with a multiplier that pulls, and nodes
+                with friction that go from sticking to slipping, or back
 .  iterations - Krylov iterations
 .  residual   - residual at the end of the step, relative to the reference
 -  tolerance  - tolerance of the step

@@ -1,7 +1,9 @@
 //! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal unknowns, contact; their manual pages
 //! are there.
 
-use super::handle::{alone, array, lent, list, not_null, starts, together, HandlePointer};
+use super::handle::{
+    alone, array, lent, list, not_null, optional, starts, together, HandlePointer,
+};
 use super::numbering::HostNumbering;
 use super::object::Object;
 use super::rows::{law, pairs, HostRow, PairSide, RowOrigin};
@@ -173,12 +175,7 @@ fn contact_row(
         )));
     }
     let law = law(number, || format!("contact row {r} is"))?;
-    Ok(HostRow {
-        origin: RowOrigin::Rows,
-        terms,
-        gap,
-        law,
-    })
+    Ok(HostRow::new(RowOrigin::Rows, terms, gap, law))
 }
 
 #[no_mangle]
@@ -216,10 +213,12 @@ fn contact_pairs(
     let law = law(kind, || "contact pairs are".into())?;
     let first = PairSide::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
     let second = PairSide::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
-    let gap = if gap.is_null() {
-        &[]
-    } else {
-        array(gap, first.dofs.len() as c_int, "gap")?
-    };
-    pairs(o.session.rank(), &first, &second, gap, law)
+    let gap = optional(gap, first.dofs.len() as c_int, "gap")?;
+    pairs(
+        o.session.rank(),
+        &first,
+        &second,
+        gap.unwrap_or_default(),
+        law,
+    )
 }

@@ -149,6 +149,14 @@ pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [
     Ok(unsafe { std::slice::from_raw_parts(data, n) })
 }
 
+/// A C array as a slice; `None` for NULL.
+pub(super) fn optional<'a, T>(data: *const T, n: c_int, what: &str) -> Result<Option<&'a [T]>> {
+    if data.is_null() {
+        return Ok(None);
+    }
+    array(data, n, what).map(Some)
+}
+
 /// Puts a result to its place, unless the caller does not want it.
 #[allow(clippy::not_unsafe_ptr_arg_deref)] // the headers ask for NULL or a place
 pub fn put<T>(to: *mut T, value: T) {

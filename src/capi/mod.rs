@@ -1,5 +1,6 @@
 //! The C interface: the registration of the plug-in, the functions behind KSPFETIFETI, and the functions of
-//! `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`surfaces`], [`results`]).
+//! `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`surfaces`], [`friction`],
+//! [`results`]).
 //!
 //! No panic unwinds into C. An error is one sentence: [`plugin`] stores it for the C side, which passes it to the
 //! host's error handler.
@@ -9,10 +10,13 @@ mod changed;
 mod conditions;
 mod coordinates;
 mod error;
+mod friction;
 mod handle;
+mod laws;
 mod life;
 mod monitor;
 mod mortar;
+mod mortar_results;
 mod mortar_rows;
 mod nested;
 mod numbering;
@@ -25,6 +29,7 @@ mod solving;
 mod stack;
 mod surface;
 mod surfaces;
+mod tangential;
 mod update;
 
 pub use handle::{alone, create, destroy, put, together, Held, Pointer};

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::laws::ContactLaw;
 use super::surface::HostSurface;
 use crate::substructures::{Law, SentLaw};
 use crate::Result;
@@ -38,6 +39,10 @@ pub struct HostMortar {
     /// Whether a node of the first surface must not carry a multiplier.
     pub without: Vec<bool>,
     pub samples: Vec<MortarSample>,
+    /// The law of contact, by unit area.
+    pub contact: ContactLaw,
+    /// Where the sides stand without a slip, at each node of the first surface.
+    pub slipped: Vec<[f64; 3]>,
 }
 
 /// The surfaces that have been added, on a rank.
@@ -99,6 +104,8 @@ impl HostSurfaces<'_> {
             adjust: given.adjust.max(0.0),
             gaps: (0..n).map(|k| given.gap + of(k).0).collect(),
             without: (0..n).map(|k| of(k).1).collect(),
+            contact: ContactLaw::default(),
+            slipped: vec![[0.0; 3]; n],
             samples: samples(pair, &first.side, &second.side, given.reach)?,
         })
     }

@@ -1,30 +1,21 @@
-//! The rows of all mortars, and their results at the nodes of surfaces.
+//! The rows of all mortars.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 use super::mortar::HostMortar;
+use super::mortar_results::MortarRowOwner;
 use super::numbering::HostNumbering;
 use super::object::Object;
 use super::rows::RowOrigin;
 use super::surface::HostSurface;
-use crate::embed::{GivenResults, GivenRow};
+use super::tangential::{NodeFriction, Tangent};
+use crate::embed::GivenRow;
 use crate::Result;
 use base::linalg::sorted::distinct;
+use base::linalg::vec3::tangents;
 use base::Fault;
-use bytemuck::{Pod, Zeroable};
 use elements::mortar::{distance, rows, DualMortarRow};
 use parallel::exchange::gather_all;
-
-/// Where a row belongs, on the rank that gives it.
-#[derive(Debug, Clone, Copy)]
-pub struct MortarRowOwner {
-    mortar: usize,
-    /// The node of its first surface.
-    node: u32,
-    /// The component that a tie is about; 0 in contact.
-    component: usize,
-    area: f64,
-}
 
 /// How many nodes of a mortar carry multipliers, and why others do not.
 #[derive(Debug, Clone, Copy, Default)]
@@ -41,18 +32,6 @@ pub struct MortarRows {
     pub placed: Vec<MortarRowOwner>,
     pub counts: Vec<MultiplierCounts>,
 }
-
-/// The result at a node, one component.
-#[derive(Debug, Clone, Copy)]
-pub struct NodeResult {
-    pub multiplier: f64,
-    pub area: f64,
-    pub gap: f64,
-    pub active: bool,
-}
-
-/// Results by mortar, node of the first surface and component, on all ranks.
-pub type AtNodes = BTreeMap<(usize, u32, usize), NodeResult>;
 
 /// Unknowns by their global numbers: whether they are held, and which are tied so far.
 struct ConstrainedUnknowns {
@@ -80,12 +59,16 @@ pub type IsHeld<'a> = &'a dyn Fn(u32) -> Option<bool>;
 const ALONG: f64 = 1e-12;
 
 impl Object {
-    /// Appends the rows of all mortars to `rows`. `held` says which unknowns of this rank's matrices are known.
-    /// Collective.
+    /// Appends the rows of all mortars to `rows`, and their friction to `friction`. `held` says which unknowns of this
+    /// rank's matrices are known. Collective.
     ///
     /// # Errors
     /// A surface with an unknown that no subdomain has, a mortar without rows; the same on all ranks.
-    pub fn add_mortar_rows(&self, rows: &mut Vec<GivenRow>, held: IsHeld) -> Result<MortarRows> {
+    pub fn add_mortar_rows(
+        &self,
+        (rows, friction): (&mut Vec<GivenRow>, &mut Vec<NodeFriction>),
+        held: IsHeld,
+    ) -> Result<MortarRows> {
         let mut out = MortarRows::default();
         if self.mortars.is_empty() {
             return Ok(out);
@@ -117,17 +100,27 @@ impl Object {
                         mortar.surfaces[0], out.counts[m].held, out.counts[m].tied, mortar.surfaces[1]
                     )));
                 }
-                for (row, component, area, node) in made {
+                for row in made {
+                    let (component, node) = (row.component, row.node);
                     if !inequality {
                         known.tied.extend(pair.numbers[0][node as usize][component]);
                     }
                     if pair.sides[0].giver[node as usize] == self.session.rank() {
-                        rows.push(row);
+                        if !row.tangents.is_empty() {
+                            friction.push(NodeFriction {
+                                normal: rows.len(),
+                                tangents: row.tangents,
+                                slipped: mortar.slipped[node as usize],
+                                law: mortar.contact,
+                                area: row.area,
+                            });
+                        }
+                        rows.push(row.row);
                         out.placed.push(MortarRowOwner {
                             mortar: m,
                             node,
                             component,
-                            area,
+                            area: row.area,
                         });
                     }
                 }
@@ -184,44 +177,6 @@ impl Object {
             tied: tied.into_iter().collect(),
         })
     }
-
-    /// Results of all mortars, on all ranks. Collective.
-    pub fn at_nodes(&self, placed: &[MortarRowOwner], given: &GivenResults) -> AtNodes {
-        let first = given.multipliers.len() - placed.len();
-        let sent = placed.iter().zip(first..).map(|(at, k)| SentResult {
-            mortar: at.mortar,
-            component: at.component,
-            node: at.node,
-            active: given.holds[k].into(),
-            multiplier: given.multipliers[k],
-            area: at.area,
-            gap: given.gaps[k],
-        });
-        let all = gather_all(self.session.comm(), &sent.collect::<Vec<_>>()).concat();
-        let one = |w: SentResult| {
-            let at = NodeResult {
-                multiplier: w.multiplier,
-                area: w.area,
-                gap: w.gap,
-                active: w.active != 0,
-            };
-            ((w.mortar, w.node, w.component), at)
-        };
-        all.into_iter().map(one).collect()
-    }
-}
-
-/// A result at a node on its way to other ranks.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct SentResult {
-    mortar: usize,
-    component: usize,
-    node: u32,
-    active: u32,
-    multiplier: f64,
-    area: f64,
-    gap: f64,
 }
 
 impl Object {
@@ -270,8 +225,16 @@ struct MortarPair<'a> {
     numbers: [&'a NodeUnknowns; 2],
 }
 
-/// A row, its component, D_p, and its node.
-type MortarRowData = (GivenRow, usize, f64, u32);
+/// A row at a node.
+struct MortarRowData {
+    row: GivenRow,
+    component: usize,
+    /// D_p.
+    area: f64,
+    node: u32,
+    /// None without friction.
+    tangents: Vec<Tangent>,
+}
 
 impl MortarPair<'_> {
     fn rows(&self, excluded: &dyn Fn(u32) -> bool) -> Vec<DualMortarRow> {
@@ -304,7 +267,13 @@ impl MortarPair<'_> {
             along[c] = 1.0;
             for row in &before[which].1 {
                 let gap = self.mortar.gaps[row.node as usize];
-                out.push((self.given(row, along, gap), c, row.area, row.node));
+                out.push(MortarRowData {
+                    row: self.given(row, along, gap),
+                    component: c,
+                    area: row.area,
+                    node: row.node,
+                    tangents: Vec::new(),
+                });
             }
         }
         out
@@ -345,13 +314,37 @@ impl MortarPair<'_> {
                 apart
             };
             let gap = apart + self.mortar.gaps[row.node as usize];
-            (self.given(&row, n, gap), 0, row.area, row.node)
+            let directions = match self.mortar.contact.has_friction() {
+                true => tangents(n, components),
+                false => Vec::new(),
+            };
+            let tangent = |direction| Tangent {
+                terms: self.terms(&row, direction),
+                direction,
+            };
+            MortarRowData {
+                row: self.given(&row, n, gap),
+                component: 0,
+                area: row.area,
+                node: row.node,
+                tangents: directions.into_iter().map(tangent).collect(),
+            }
         };
         self.rows(&excluded).into_iter().map(one).collect()
     }
 
     /// The row along a direction.
     fn given(&self, row: &DualMortarRow, along: [f64; 3], gap: f64) -> GivenRow {
+        GivenRow {
+            terms: self.terms(row, along),
+            gap,
+            law: self.mortar.law,
+            compliance: self.mortar.contact.compliance(row.area),
+        }
+    }
+
+    /// The terms of the row along a direction.
+    fn terms(&self, row: &DualMortarRow, along: [f64; 3]) -> Vec<(u32, f64)> {
         let mut terms = Vec::new();
         let lists = [(&row.own, 1.0), (&row.other, -1.0)];
         for ((list, sign), numbers) in lists.into_iter().zip(self.numbers) {
@@ -363,16 +356,12 @@ impl MortarPair<'_> {
                 }
             }
         }
-        GivenRow {
-            terms,
-            gap,
-            law: self.mortar.law,
-        }
+        terms
     }
 
     /// How many nodes carry multipliers; of the others those that are held or tied.
     fn counts(&self, known: &ConstrainedUnknowns, made: &[MortarRowData]) -> MultiplierCounts {
-        let carry: HashSet<u32> = made.iter().map(|m| m.3).collect();
+        let carry: HashSet<u32> = made.iter().map(|m| m.node).collect();
         let mut out = MultiplierCounts {
             carry: carry.len(),
             ..MultiplierCounts::default()

@@ -4,13 +4,15 @@ use super::changed::Changed;
 use super::coordinates::{rigid, Coordinates};
 use super::monitor::Monitor;
 use super::mortar::HostMortar;
-use super::mortar_rows::{AtNodes, MortarRows};
+use super::mortar_results::AtNodes;
+use super::mortar_rows::MortarRows;
 use super::nested::HostVector as GivenVector;
 use super::rows::HostRow;
 use super::stack::{fits, HostMatrix, LocalMatrix, Stack, StackStates};
 use super::surface::HostSurface;
+use super::tangential::TangentialRow;
 use crate::embed::torn::spanned;
-use crate::embed::{Embedded, EmbeddedResult, SetUpWork, Torn};
+use crate::embed::{Embedded, EmbeddedResult, GivenRows, SetUpWork, Torn};
 use crate::{Error, Result};
 use base::Fault;
 use parallel::exchange::{exchange, highest};
@@ -49,6 +51,10 @@ pub struct Object {
     pub mortar_rows: MortarRows,
     /// Their results, of the last solve.
     pub at_nodes: AtNodes,
+    /// The tangential rows of nodes with friction, in the present solver.
+    pub tangential: Vec<TangentialRow>,
+    /// Whether the slips of the last solve have been taken for those of a load step that has ended.
+    pub carried: bool,
     pub bodies: usize,
     pub view: bool,
     /// Changes on this rank since the last set-up.
@@ -84,6 +90,8 @@ impl Object {
             mortars: Vec::new(),
             mortar_rows: MortarRows::default(),
             at_nodes: AtNodes::default(),
+            tangential: Vec::new(),
+            carried: false,
             bodies: 0,
             view: false,
             changed: Changed::default(),
@@ -206,7 +214,7 @@ impl Object {
             layout,
             held: HashSet::new(),
             primal: HashSet::new(),
-            rows: Vec::new(),
+            rows: GivenRows::default(),
             named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;

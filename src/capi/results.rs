@@ -72,8 +72,8 @@ pub unsafe extern "C" fn FetiFetiGetMultipliers(
     alone(ff, c"FetiFetiGetMultipliers", |o| {
         o.outcome()?;
         let mut found = o.solver()?.given().unwrap_or_default().multipliers;
-        // Those of mortars come last.
-        found.truncate(found.len() - o.mortar_rows.placed.len());
+        // Those of mortars and of friction come last.
+        found.truncate(found.len() - o.mortar_rows.placed.len() - o.tangential.len());
         if n as usize != found.len() || (lambda.is_null() && n > 0) {
             return Err(Fault::Sizes.error(format!(
                 "there is room for {n} multipliers, expected {}: as many as this rank gave rows",

@@ -1,7 +1,9 @@
 //! The rows that a rank gives: their terms refer to unknowns of all bodies, or to unknowns of one matrix.
 
+use super::laws::ContactLaw;
 use super::numbering::HostNumbering;
 use super::object::Object;
+use super::tangential::{beside, ContactResult, NodeFriction};
 use crate::embed::GivenRow;
 use crate::substructures::Law;
 use crate::Result;
@@ -23,6 +25,32 @@ pub struct HostRow {
     pub terms: Vec<(HostNumbering, u32, f64)>,
     pub gap: f64,
     pub law: Law,
+    /// Friction and softness of an inequality.
+    pub contact: ContactLaw,
+    /// Where the sides stand without a slip, in the components of a node.
+    pub slipped: [f64; 3],
+    /// The result of the last solve.
+    pub solved: ContactResult,
+}
+
+impl HostRow {
+    /// A hard row without friction.
+    pub fn new(
+        origin: RowOrigin,
+        terms: Vec<(HostNumbering, u32, f64)>,
+        gap: f64,
+        law: Law,
+    ) -> HostRow {
+        HostRow {
+            origin,
+            terms,
+            gap,
+            law,
+            contact: ContactLaw::default(),
+            slipped: [0.0; 3],
+            solved: ContactResult::default(),
+        }
+    }
 }
 
 /// The law of a C FetiFetiRowKind.
@@ -102,37 +130,50 @@ pub fn pairs(
                 "contact pair {r} of rank {rank} has unknown {a} on both sides, expected different ones"
             )));
         }
-        rows.push(HostRow {
-            origin: RowOrigin::Pairs,
-            terms: vec![
-                (first.numbering, a as u32, 1.0),
-                (second.numbering, b as u32, -1.0),
-            ],
-            gap,
-            law,
-        });
+        let terms = vec![
+            (first.numbering, a as u32, 1.0),
+            (second.numbering, b as u32, -1.0),
+        ];
+        rows.push(HostRow::new(RowOrigin::Pairs, terms, gap, law));
     }
     Ok(rows)
 }
 
 impl Object {
-    /// This rank's rows in the numbering of all unknowns.
+    /// This rank's rows in the numbering of all unknowns, and friction at them.
     ///
     /// # Errors
-    /// Rows of matrices that no longer exist.
-    pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
+    /// Rows of matrices that no longer exist; friction at rows without a normal.
+    pub fn given_rows(&self) -> Result<(Vec<GivenRow>, Vec<NodeFriction>)> {
         let number = |&(whose, dof, c): &(HostNumbering, u32, f64)| {
             Ok((self.number(whose, dof, "contact pair")?, c))
         };
-        let row = |row: &HostRow| {
+        let (mut rows, mut friction) = (Vec::new(), Vec::new());
+        for (normal, row) in self.rows.iter().enumerate() {
             let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
-            Ok(GivenRow {
-                terms: terms?,
+            let terms = terms?;
+            if row.contact.has_friction() {
+                friction.push(NodeFriction {
+                    normal,
+                    tangents: beside(&terms, self.nodes(), &|| self.named(normal))?,
+                    slipped: row.slipped,
+                    law: row.contact,
+                    area: 1.0,
+                });
+            }
+            rows.push(GivenRow {
+                terms,
                 gap: row.gap,
                 law: row.law,
-            })
-        };
-        self.rows.iter().map(row).collect()
+                compliance: row.contact.compliance(1.0),
+            });
+        }
+        Ok((rows, friction))
+    }
+
+    /// The name of a row of this rank in errors.
+    pub fn named(&self, row: usize) -> String {
+        format!("contact row {row} of rank {}", self.session.rank())
     }
 
     /// Number of unknowns of a matrix, stacked or from FetiFetiSetMatIS.

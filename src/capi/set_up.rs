@@ -6,10 +6,14 @@ use std::collections::HashMap;
 use super::changed::Changed;
 use super::mortar_rows::{IsHeld, MortarRows};
 use super::object::Object;
+use super::tangential::{appended, gaps, TangentialRow};
 use crate::embed::states::states;
-use crate::embed::{Embedded, GivenRow, Local, SetUp};
+use crate::embed::{Embedded, GivenRows, Local, SetUp};
 use crate::settings::MethodSettings;
 use crate::Result;
+
+/// The rows of mortars and of friction that follow those of the host.
+type RowOwners = (MortarRows, Vec<TangentialRow>);
 
 impl Object {
     /// Makes the solver if there is none; brings it up to date if the input has changed. Collective.
@@ -41,10 +45,7 @@ impl Object {
             return self.whole();
         };
         if !changed.matrices && !changed.rows {
-            let mut gaps: Vec<f64> = self.rows.iter().map(|row| row.gap).collect();
-            // Those of mortars come last and stay.
-            gaps.extend(solver.gaps().skip(gaps.len()));
-            solver.set_gaps(&gaps);
+            solver.set_gaps(&self.present_gaps(&solver));
             self.solver = Some(solver);
             return Ok(None);
         }
@@ -60,13 +61,13 @@ impl Object {
         } else {
             None
         };
-        let (rows, mortars) = rows.unzip();
+        let (rows, owners) = rows.unzip();
         if !changed.matrices {
             // After an error the solver has the old rows.
             let set = solver.set_rows(rows.unwrap_or_default());
             self.solver = Some(solver);
             set?;
-            self.mortar_rows = mortars.unwrap_or_default();
+            self.own(owners.unwrap_or_default());
             return Ok(Some(SetUp::Rows));
         }
         let renewed = {
@@ -80,19 +81,40 @@ impl Object {
             None => self.whole(),
             Some(solver) => {
                 self.solver = Some(solver);
-                if let Some(mortars) = mortars {
-                    self.mortar_rows = mortars;
+                if let Some(owners) = owners {
+                    self.own(owners);
                 }
                 Ok(Some(SetUp::Numbers))
             }
         }
     }
 
-    /// All rows in the numbering of all unknowns; those of mortars come last. Collective.
-    fn all_rows(&self, held: IsHeld) -> Result<(Vec<GivenRow>, MortarRows)> {
-        let mut rows = self.session.agree(self.given_rows())?;
-        let mortars = self.add_mortar_rows(&mut rows, held)?;
-        Ok((rows, mortars))
+    /// All rows in the numbering of all unknowns: those of the host, of mortars, and of friction. Collective.
+    fn all_rows(&self, held: IsHeld) -> Result<(GivenRows, RowOwners)> {
+        let (mut rows, mut friction) = self.session.agree(self.given_rows())?;
+        let mortars = self.add_mortar_rows((&mut rows, &mut friction), held)?;
+        let (rows, tangential) = appended(rows, friction);
+        Ok((rows, (mortars, tangential)))
+    }
+
+    fn own(&mut self, (mortars, tangential): RowOwners) {
+        (self.mortar_rows, self.tangential) = (mortars, tangential);
+    }
+
+    /// The present right-hand sides of the rows of a solver. Clearances of mortars stay.
+    fn present_gaps(&self, solver: &Embedded) -> Vec<f64> {
+        let (host, placed) = (self.rows.len(), &self.mortar_rows.placed);
+        let mut out: Vec<f64> = self.rows.iter().map(|row| row.gap).collect();
+        out.extend(solver.gaps().skip(host).take(placed.len()));
+        let slipped = |normal: usize| match self.rows.get(normal) {
+            Some(row) => row.slipped,
+            None => {
+                let owner = &placed[normal - host];
+                self.mortars[owner.mortar].slipped[owner.node as usize]
+            }
+        };
+        out.extend(gaps(&self.tangential, slipped));
+        out
     }
 
     /// Makes a solver. Collective.
@@ -105,7 +127,9 @@ impl Object {
             states(&self.session, &torn)
         };
         let held = |dof: u32| states.get(&dof).map(|s| !s.is_free());
-        (torn.rows, self.mortar_rows) = self.all_rows(&held)?;
+        let owners;
+        (torn.rows, owners) = self.all_rows(&held)?;
+        self.own(owners);
         let settings = MethodSettings {
             prefix: format!("{}fetifeti_", self.prefix),
             keeps_analyses: true,

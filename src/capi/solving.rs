@@ -1,7 +1,9 @@
 //! The solve of the object behind `FetiFeti`, and its results.
 
+use super::mortar_results::at_nodes;
 use super::nested::HostVector;
 use super::object::Object;
+use super::tangential;
 use crate::contact::{State, Step};
 use crate::embed::{Embedded, EmbeddedResult};
 use crate::Result;
@@ -33,7 +35,14 @@ impl Object {
         let outcome = solver.solve_with_rows(&plain[0], plain.get(2), &plain[1], &mut observe)?;
         checked[1].take(&plain[1])?;
         let given = solver.given().unwrap_or_default();
-        self.at_nodes = self.at_nodes(&self.mortar_rows.placed, &given);
+        let at_rows = tangential::results(&self.tangential, &given);
+        let (of_host, of_mortars) = at_rows.split_at(self.rows.len());
+        for (row, result) in self.rows.iter_mut().zip(of_host) {
+            row.solved = *result;
+        }
+        let placed = &self.mortar_rows.placed;
+        self.at_nodes = at_nodes(&self.session, placed, (&given, of_host.len()), of_mortars);
+        self.carried = false;
         self.outcome = Some(outcome);
         Ok(())
     }

@@ -1,14 +1,14 @@
 //! The functions of `wrappers/fetifeti.h` for surfaces that mortar rows join; their manual pages are there.
 
-use super::handle::{alone, array, put, starts, together, HandlePointer};
+use super::handle::{alone, array, optional, put, starts, together, HandlePointer};
+use super::laws::INFINITY;
 use super::mortar::{GivenMortar, HostSurfaces};
+use super::object::Object;
 use super::rows::law;
 use super::surface::{GivenSurface, HostSurface};
+use crate::Result;
 use base::Fault;
 use std::ffi::c_int;
-
-/// PETSC_INFINITY.
-const INFINITY: f64 = f64::MAX / 4.0;
 
 #[allow(clippy::too_many_arguments)]
 #[no_mangle]
@@ -80,16 +80,8 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
             reach,
             adjust,
             gap,
-            gaps: if gaps.is_null() {
-                &[]
-            } else {
-                array(gaps, n, "gaps")?
-            },
-            without: if without.is_null() {
-                &[]
-            } else {
-                array(without, n, "without")?
-            },
+            gaps: optional(gaps, n, "gaps")?.unwrap_or_default(),
+            without: optional(without, n, "without")?.unwrap_or_default(),
         };
         let all = HostSurfaces {
             session: &o.session,
@@ -125,26 +117,8 @@ pub unsafe extern "C" fn FetiFetiGetMortar(
     state: *mut c_int,
 ) -> c_int {
     alone(ff, c"FetiFetiGetMortar", |o| {
-        o.outcome()?;
-        let found = usize::try_from(mortar)
-            .ok()
-            .filter(|&m| m < o.mortar_rows.counts.len());
-        let Some(m) = found else {
-            return Err(Fault::OutOfRange.error(format!(
-                "there is no mortar {mortar} in what was solved, expected one of {} (from 0)",
-                o.mortar_rows.counts.len()
-            )));
-        };
-        let given = &o.mortars[m];
-        let surface = &o.surfaces[given.surfaces[0]];
-        if n as usize != surface.mine.len() {
-            return Err(Fault::Sizes.error(format!(
-                "there is room for {n} nodes, expected {}: as many as this rank gave of surface {}",
-                surface.mine.len(),
-                given.surfaces[0]
-            )));
-        }
-        let each = if given.law.is_inequality() {
+        let (m, surface) = solved_mortar(o, mortar, n)?;
+        let each = if o.mortars[m].law.is_inequality() {
             1
         } else {
             surface.components
@@ -155,7 +129,7 @@ pub unsafe extern "C" fn FetiFetiGetMortar(
             let carried = || at.iter().flatten();
             let remaining = carried().map(|a| a.gap);
             let remaining = remaining.max_by(|a, b| a.abs().total_cmp(&b.abs()));
-            let holds = carried().map(|a| c_int::from(a.active)).max();
+            let holds = carried().map(|a| a.contact.state).max();
             for (c, at) in at.iter().enumerate() {
                 let multiplier = at.map_or(0.0, |a| a.multiplier);
                 at_place(lambda, i * each + c, multiplier);
@@ -172,8 +146,32 @@ pub unsafe extern "C" fn FetiFetiGetMortar(
     })
 }
 
+/// A mortar of the last solve, and the surface of its multipliers, of which this rank gave `n` nodes.
+///
+/// # Errors
+/// A number that there is not; another number of nodes.
+pub(super) fn solved_mortar(o: &Object, mortar: c_int, n: c_int) -> Result<(usize, &HostSurface)> {
+    o.outcome()?;
+    let solved = o.mortar_rows.counts.len();
+    let found = usize::try_from(mortar).ok().filter(|&m| m < solved);
+    let m = found.ok_or_else(|| {
+        Fault::OutOfRange.error(format!(
+            "there is no mortar {mortar} in what was solved, expected one of {solved} (from 0)"
+        ))
+    })?;
+    let first = o.mortars[m].surfaces[0];
+    let surface = &o.surfaces[first];
+    if n as usize != surface.mine.len() {
+        return Err(Fault::Sizes.error(format!(
+            "there is room for {n} nodes, expected {}: as many as this rank gave of surface {first}",
+            surface.mine.len()
+        )));
+    }
+    Ok((m, surface))
+}
+
 /// Puts a number into an array of results; `place` is within what the header asks for.
-fn at_place<T>(to: *mut T, place: usize, value: T) {
+pub(super) fn at_place<T>(to: *mut T, place: usize, value: T) {
     if !to.is_null() {
         // SAFETY: the header asks for room for so many numbers of each node.
         put(unsafe { to.add(place) }, value);

@@ -5,11 +5,12 @@
 
 use std::collections::HashMap;
 
+use super::friction;
 use super::known_dofs::KnownDofs;
 use super::placed::LocatedRow;
-use super::torn::GivenRow;
+use super::torn::{GivenRow, GivenRows};
 use super::touched::{RankProblem, Touched};
-use crate::substructures::Row;
+use crate::substructures::{FrictionNode, Law, Row};
 use crate::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::{any, exchange, exchange_by_rank, total};
@@ -45,6 +46,8 @@ pub struct HostContact {
     homes: Vec<Option<usize>>,
     /// The known dofs in this rank's rows; `None` if no row on any rank has one.
     known: Option<KnownDofs>,
+    /// The nodes with friction, by the places of their rows among those that this rank takes.
+    pub friction: Vec<FrictionNode>,
     /// Number of rows over all ranks.
     pub n_global: usize,
     /// Whether any row on any rank is an inequality.
@@ -58,28 +61,34 @@ impl HostContact {
     /// A row with a dof that no subdomain has, the same error on all ranks; PETSc's own.
     pub fn new(
         session: &Session,
-        given: &[GivenRow],
+        given: &GivenRows,
         here: &RankProblem<'_>,
     ) -> Result<HostContact> {
         let comm = session.comm();
-        let n_global = total(comm, given.len() as f64) as usize;
+        let n_global = total(comm, given.rows.len() as f64) as usize;
         if n_global == 0 {
             return Ok(HostContact::default());
         }
         let touched = Touched::new(session, given, here)?;
         let place = |(r, row): (usize, &GivenRow)| {
             LocatedRow::new(r, row, &touched).map_err(|dof| {
+                let tangential = |node: &&FrictionNode| node.tangential.contains(&r);
+                let (what, r) = match given.friction.iter().find(tangential) {
+                    Some(node) => ("friction of contact row", node.normal),
+                    None => ("contact row", r),
+                };
                 Error::input(format!(
-                    "contact row {r} of rank {} has a coefficient at unknown {dof}, \
+                    "{what} {r} of rank {} has a coefficient at unknown {dof}, \
                      which no subdomain has, expected unknowns of subdomains",
                     session.rank()
                 ))
             })
         };
-        let placed = given.iter().enumerate().map(place);
-        let placed: Vec<Option<LocatedRow>> = session.agree(placed.collect())?;
+        let placed = given.rows.iter().enumerate().map(place);
+        let mut placed: Vec<Option<LocatedRow>> = session.agree(placed.collect())?;
+        friction::leave_out(&given.friction, &mut placed);
         let home = |row: &LocatedRow| row.block as usize % session.size();
-        let homes = placed.iter().map(|p| p.as_ref().map(home)).collect();
+        let homes: Vec<Option<usize>> = placed.iter().map(|p| p.as_ref().map(home)).collect();
         let mut outgoing = Parcels::for_each_rank(comm);
         for row in placed.iter().flatten() {
             row.give(&mut outgoing[home(row)]);
@@ -100,13 +109,19 @@ impl HostContact {
                     .collect()
             }),
         };
+        let places = rows.iter().enumerate();
+        let places: HashMap<(usize, usize), usize> = places
+            .map(|(place, (rank, row))| ((*rank, row.number), place))
+            .collect();
+        let nodes = friction::forth(session, &given.friction, &homes, &places);
         Ok(HostContact {
+            friction: nodes,
             taken: rows.iter().map(taken).collect(),
             block: touched.here,
             homes,
             known,
             n_global,
-            inequalities: any(comm, given.iter().any(|r| r.law.is_inequality())),
+            inequalities: any(comm, given.rows.iter().any(|r| r.law.is_inequality())),
         })
     }
 
@@ -118,6 +133,21 @@ impl HostContact {
     /// This rank's rows for the method.
     pub fn rows(&self) -> impl Iterator<Item = Row> + '_ {
         self.taken.iter().map(|t| t.row.clone())
+    }
+
+    /// The laws of this rank's rows.
+    pub fn laws(&self) -> impl Iterator<Item = Law> + '_ {
+        self.taken.iter().map(|t| t.row.law)
+    }
+
+    /// The nodes with friction by the places of their rows behind so many others.
+    pub fn friction_behind(&self, others: usize) -> Vec<FrictionNode> {
+        let nodes = self.friction.iter();
+        let behind = nodes.map(|node| {
+            let tangential = node.tangential.iter().map(|t| others + t);
+            FrictionNode::new(others + node.normal, tangential.collect(), node.bound)
+        });
+        behind.collect()
     }
 
     /// Right-hand sides of this rank's rows, with the terms at known dofs moved there. `values` has the values of the

@@ -11,8 +11,8 @@
 //! body (`rigid_constraints`).
 //!
 //! The host's rows come from any rank: the owners of their dofs say where the dofs are and which rows are connected
-//! (`touched`), the rows go to the ranks that take them (`placed`), values of known dofs follow at each solve
-//! (`known_dofs`).
+//! (`touched`), the rows go to the ranks that take them (`placed`) and nodes with friction go along (`friction`),
+//! values of known dofs follow at each solve (`known_dofs`).
 //!
 //! Data that follow from patterns and numbers alone stay in a `frame`: with other entries in the same matrices, other
 //! rows or other gaps (`renewal`) no more is done than they ask for, and `work` counts it.
@@ -22,6 +22,7 @@ pub(crate) mod bonds;
 pub(crate) mod classes;
 pub(crate) mod contact;
 pub(crate) mod frame;
+pub(crate) mod friction;
 pub(crate) mod kernels;
 pub(crate) mod known_dofs;
 pub(crate) mod motions;
@@ -45,5 +46,5 @@ pub(crate) mod work;
 pub use frame::Local;
 pub use pieces::TornPiece;
 pub use solver::{Embedded, EmbeddedResult, GivenResults};
-pub use torn::{GivenRow, Torn};
+pub use torn::{GivenRow, GivenRows, Torn};
 pub use work::{SetUp, SetUpWork};

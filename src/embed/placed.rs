@@ -14,6 +14,7 @@ pub struct LocatedRow {
     pub number: usize,
     law: Law,
     gap: f64,
+    compliance: f64,
     /// Its block of connected rows.
     pub block: u32,
     terms: Vec<LocatedTerm>,
@@ -35,6 +36,7 @@ pub struct LocatedTerm {
 pub struct SentRow {
     number: usize,
     gap: f64,
+    compliance: f64,
     law: SentLaw,
     block: u64,
 }
@@ -78,6 +80,7 @@ impl LocatedRow {
             number,
             law: row.law,
             gap: row.gap,
+            compliance: row.compliance,
             block,
             terms,
         }))
@@ -88,6 +91,7 @@ impl LocatedRow {
         let row = SentRow {
             number: self.number,
             gap: self.gap,
+            compliance: self.compliance,
             law: self.law.sent(),
             block: self.block.into(),
         };
@@ -100,6 +104,7 @@ impl LocatedRow {
             number: row.number,
             law: row.law.law(),
             gap: row.gap,
+            compliance: row.compliance,
             block: row.block as u32,
             terms: terms.to_vec(),
         }
@@ -143,7 +148,7 @@ impl LocatedRow {
             law: self.law,
             holds: true,
             block: self.block.into(),
-            compliance: 0.0,
+            compliance: self.compliance,
             rounding: 0.0,
             label: RowLabel::new(source, [first, second]),
         }

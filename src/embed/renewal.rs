@@ -7,7 +7,7 @@ use super::contact::HostContact;
 use super::frame::Local;
 use super::rows::rows;
 use super::solver::{ContactEnd, Embedded, GivenResults};
-use super::torn::GivenRow;
+use super::torn::{GivenRow, GivenRows};
 use super::touched::RankProblem;
 use crate::feti::Numbers;
 use crate::substructures::{BodyNode, Row, RowLabel, RowSource};
@@ -20,7 +20,7 @@ use petsc::Mat;
 /// Rows in the place of those that a solver has.
 struct Replaced {
     contact: HostContact,
-    given: Vec<GivenRow>,
+    given: GivenRows,
     n_ties: usize,
     /// The rows of the solver.
     rows: Vec<Row>,
@@ -64,13 +64,13 @@ impl Embedded {
 
     /// The right-hand sides of the rows that this rank gave.
     pub fn gaps(&self) -> impl Iterator<Item = f64> + '_ {
-        self.given.iter().map(|row| row.gap)
+        self.given.rows.iter().map(|row| row.gap)
     }
 
     /// Replaces the right-hand sides of the rows that this rank gave; nothing is set up. Collective.
     pub fn set_gaps(&mut self, gaps: &[f64]) {
         self.contact.set_gaps(&self.session, gaps);
-        for (row, &gap) in self.given.iter_mut().zip(gaps) {
+        for (row, &gap) in self.given.rows.iter_mut().zip(gaps) {
             row.gap = gap;
         }
     }
@@ -80,9 +80,10 @@ impl Embedded {
     ///
     /// # Errors
     /// A row with a dof that no subdomain has, and what [`FetiFeti::set_rows`] says; then nothing has changed.
-    pub fn set_rows(&mut self, given: Vec<GivenRow>) -> Result<()> {
+    pub fn set_rows(&mut self, given: GivenRows) -> Result<()> {
         let new = self.replaced(given)?;
-        self.solver.get_mut().set_rows(new.rows)?;
+        let friction = new.contact.friction_behind(new.n_ties);
+        self.solver.get_mut().set_rows(new.rows, friction)?;
         let solver = self.solver.borrow();
         self.reached = reached(&solver, new.n_ties, new.start);
         (self.contact, self.given, self.n_ties) = (new.contact, new.given, new.n_ties);
@@ -98,7 +99,7 @@ impl Embedded {
     pub fn renewed(
         mut self,
         given: &[Local<'_>],
-        rows: Option<Vec<GivenRow>>,
+        rows: Option<GivenRows>,
     ) -> Result<Option<Embedded>> {
         let session = self.session.clone();
         let found = {
@@ -118,7 +119,7 @@ impl Embedded {
         let (rows, rest) = match new {
             None => (None, None),
             Some(new) => (
-                Some(new.rows),
+                Some((new.rows, new.contact.friction_behind(new.n_ties))),
                 Some((new.contact, new.given, new.n_ties, new.start)),
             ),
         };
@@ -141,7 +142,7 @@ impl Embedded {
     }
 
     /// Other rows than those that this rank gave. Collective.
-    fn replaced(&self, given: Vec<GivenRow>) -> Result<Replaced> {
+    fn replaced(&self, given: GivenRows) -> Result<Replaced> {
         let (session, frame) = (&self.session, &self.frame);
         let (n, parts) = (frame.n_global, &frame.parts);
         let here = RankProblem {
@@ -157,7 +158,7 @@ impl Embedded {
         let n_ties = all.len();
         all.extend(contact.rows());
         let some = any(session.comm(), self.reached.borrow().is_some());
-        let start = some.then(|| self.start(&contact, &given, &all[..n_ties]));
+        let start = some.then(|| self.start(&contact, &given.rows, &all[..n_ties]));
         Ok(Replaced {
             contact,
             given,
@@ -186,7 +187,7 @@ impl Embedded {
             })
             .collect();
         let each = results.multipliers.into_iter().zip(results.holds);
-        let before = subjects(&self.given, self.frame.block_size).into_iter();
+        let before = subjects(&self.given.rows, self.frame.block_size).into_iter();
         let known: HashMap<Subject, (f64, bool)> = before.zip(each).collect();
         // Rows about something new hold to begin with.
         let now = subjects(given, self.frame.block_size).into_iter();

@@ -17,7 +17,7 @@ use super::shares::{KnownDofValues, Shares};
 use super::sharing::Sharers;
 use super::states::states;
 use super::subdomains::{subdomain, SubdomainProperties};
-use super::torn::{GivenRow, Torn};
+use super::torn::{GivenRows, Torn};
 use super::touched::RankProblem;
 use crate::contact::{Observer, State as ContactState};
 use crate::embed::bodies;
@@ -25,7 +25,7 @@ use crate::feti::krylov::solve::JudgeTiming;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
-use crate::substructures::{Problem, SolvedRow};
+use crate::substructures::{Law, Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::exchange::total;
 use parallel::halo::Halo;
@@ -69,7 +69,7 @@ pub struct Embedded {
     pub(super) values: RefCell<KnownDofValues>,
     pub(super) contact: HostContact,
     /// The rows that this rank gave.
-    pub(super) given: Vec<GivenRow>,
+    pub(super) given: GivenRows,
     /// Number of rows that tie bodies; the host's rows come after them.
     pub(super) n_ties: usize,
     /// Where the last contact loop ended.
@@ -195,7 +195,8 @@ impl Embedded {
         let names = (0..n_bodies).map(|b| b.to_string());
         let problem = Problem::new(names, sharers.n_subdomains)
             .with_subdomains(local)
-            .with_rows(rows);
+            .with_rows(rows)
+            .with_friction(contact.friction_behind(n_ties));
         // The solver has their loads.
         parts.iter_mut().for_each(|p| p.known = Vec::new());
         let solver = FetiFeti::new(session, problem, settings)?;
@@ -288,9 +289,18 @@ impl Embedded {
 
     /// The results of the host's rows, on the ranks that gave them. Collective.
     fn of_given_rows(&self, solution: &Solution) -> GivenResults {
-        let rows = &solution.rows()[self.n_ties..];
-        let back =
-            |value: fn(&SolvedRow) -> f64| self.contact.back(&self.session, rows.iter().map(value));
+        let mut others = solution.rows()[self.n_ties..].iter();
+        let mut tangential = solution.tangential_rows().iter();
+        let row = |law: Law| match law.is_friction() {
+            true => tangential.next(),
+            false => others.next(),
+        };
+        let rows: Option<Vec<&SolvedRow>> = self.contact.laws().map(row).collect();
+        let rows = rows.expect("a solution has all rows");
+        let back = |value: fn(&SolvedRow) -> f64| {
+            let values = rows.iter().map(|row| value(row));
+            self.contact.back(&self.session, values)
+        };
         let holds = back(|r| f64::from(u8::from(r.holds())));
         GivenResults {
             multipliers: back(|r| r.multiplier),

@@ -1,7 +1,7 @@
 //! The input of a host program: subdomain matrices, not yet grouped or classified.
 
 use super::pieces::{torn_from, TornPiece};
-use crate::substructures::Law;
+use crate::substructures::{FrictionNode, Law};
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
 use parallel::halo::Halo;
@@ -17,6 +17,17 @@ pub struct GivenRow {
     pub gap: f64,
     /// Which multipliers it may have.
     pub law: Law,
+    /// By how much a unit force compresses what the row stands for; 0 where it is rigid.
+    pub compliance: f64,
+}
+
+/// The rows that a rank of the host gives.
+#[derive(Debug, Clone, Default)]
+pub struct GivenRows {
+    /// The rows.
+    pub rows: Vec<GivenRow>,
+    /// Nodes with friction, by the places of their rows here.
+    pub friction: Vec<FrictionNode>,
 }
 
 /// The operator Σ Rᵀ K R as a sum of subdomain matrices.
@@ -36,7 +47,7 @@ pub struct Torn {
     /// This rank's global dofs that are to be primal where subdomains of a body share them.
     pub primal: HashSet<u32>,
     /// The rows that this rank adds.
-    pub rows: Vec<GivenRow>,
+    pub rows: GivenRows,
     /// The body of each global dof, if the host names bodies by dofs. A subdomain belongs to the body that most of its
     /// dofs name.
     pub named: Option<PetscVec>,
@@ -67,7 +78,7 @@ impl Torn {
             layout,
             held: HashSet::new(),
             primal: HashSet::new(),
-            rows: Vec::new(),
+            rows: GivenRows::default(),
             named: None,
         })
     }

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::TornSubdomain;
-use super::torn::GivenRow;
+use super::torn::GivenRows;
 use crate::Result;
 use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
@@ -81,26 +81,32 @@ struct Owned {
 }
 
 impl Touched {
-    /// Finds the dofs of the rows `given` by this rank. A block of connected rows is named by its lowest unknown.
-    /// Collective.
+    /// Finds the dofs of the rows `given` by this rank. A block of connected rows is named by its lowest unknown; the
+    /// rows of a node with friction are connected. Collective.
     ///
     /// # Errors
     /// PETSc's own.
-    pub fn new(session: &Session, given: &[GivenRow], here: &RankProblem<'_>) -> Result<Touched> {
+    pub fn new(session: &Session, given: &GivenRows, here: &RankProblem<'_>) -> Result<Touched> {
         let range = here.layout.ownership_range();
         let owners = Owners::new(session.comm(), range.start);
-        let dofs = distinct(given.iter().flat_map(|row| &row.terms).map(|t| t.0));
+        let dofs = distinct(given.rows.iter().flat_map(|row| &row.terms).map(|t| t.0));
         let mut owned = asked(session, &owners, &dofs);
         reported(session, &owners, here, &mut owned)?;
         let holders = report_holders(session, &owned);
         let unknown = |k: &usize| matches!(holders[*k], Holder::Body(_));
         let place = |dof: &u32| dofs.binary_search(dof).expect("every dof is in the list");
         let mut sets = UnionFind::new(dofs.len());
-        for row in given {
-            let mut unknowns = row.terms.iter().map(|t| place(&t.0)).filter(unknown);
+        let terms = |row: usize| given.rows[row].terms.iter();
+        let mut join = |rows: &mut dyn Iterator<Item = usize>| {
+            let places = rows.flat_map(terms).map(|t| place(&t.0));
+            let mut unknowns = places.filter(unknown);
             if let Some(first) = unknowns.next() {
                 unknowns.for_each(|k| sets.join(first, k));
             }
+        };
+        (0..given.rows.len()).for_each(|row| join(&mut std::iter::once(row)));
+        for node in &given.friction {
+            join(&mut node.tangential.iter().copied().chain([node.normal]));
         }
         let unknowns: Vec<usize> = (0..dofs.len()).filter(unknown).collect();
         let blocks = connect(session, &owners, (&dofs, &unknowns), &mut sets, &mut owned);

@@ -12,7 +12,7 @@ use super::set_up_summary::SetUpSummary;
 use super::settings::MethodSettings;
 use super::setup::SetUpResult;
 use super::subdomain::retained::RetainedFactors;
-use crate::substructures::{Problem, Row};
+use crate::substructures::{FrictionNode, Problem, Row};
 use crate::Result;
 use cholesky::interior::Analysed;
 use parallel::exchange::any;
@@ -91,24 +91,25 @@ impl LinearMethod {
         self.system.set_gaps(gaps);
     }
 
-    /// Replaces the rows between bodies that this rank provides. Subdomains whose interface stays the same stay
-    /// factored, all else is set up anew. After an error the old rows are there as they were. Collective.
+    /// Replaces the rows between bodies that this rank provides, and the nodes with friction among them. Subdomains
+    /// whose interface stays the same stay factored, all else is set up anew. After an error the old rows are there as
+    /// they were. Collective.
     ///
     /// # Errors
     /// Bad rows, a body that nothing holds, PETSc's own errors; the same on all ranks.
-    pub fn set_rows(&mut self, rows: Vec<Row>) -> Result<()> {
+    pub fn set_rows(&mut self, rows: Vec<Row>, friction: Vec<FrictionNode>) -> Result<()> {
         let adapted = self.facts.adaptive_constraints.iter().any(|n| *n > 0);
         // Adaptive constraints have changed the operators of subdomains.
         let kept = self.kept();
         let kept = if adapted { kept.patterns() } else { kept };
-        let before = std::mem::replace(&mut self.problem.rows, rows);
+        let before = self.problem.replace_rows(rows, friction);
         match SetUpResult::new(&self.session, &self.problem, &self.settings, Some(&kept)) {
             Ok(made) => {
                 self.take(made);
                 Ok(())
             }
             Err(error) => {
-                self.problem.rows = before;
+                self.problem.replace_rows(before.0, before.1);
                 Err(error)
             }
         }
@@ -123,7 +124,7 @@ impl LinearMethod {
     pub fn renewed(
         self,
         numbers: Vec<Numbers>,
-        rows: Option<Vec<Row>>,
+        rows: Option<(Vec<Row>, Vec<FrictionNode>)>,
     ) -> Result<Option<LinearMethod>> {
         let session = self.session.clone();
         let kept = self.kept().patterns();
@@ -147,7 +148,9 @@ impl LinearMethod {
             Arc::make_mut(&mut sub.k).val = new.k;
             sub.rho = new.rho;
         }
-        problem.rows = rows.unwrap_or(problem.rows);
+        if let Some((rows, friction)) = rows {
+            problem.replace_rows(rows, friction);
+        }
         let mut out = LinearMethod::keeping(&session, problem, settings, Some(&kept))?;
         let more = free(&out).iter().zip(&before).any(|(now, then)| now > then);
         if any(session.comm(), more) {

@@ -152,6 +152,18 @@ impl Problem {
         self.weak.iter().find_map(of).unwrap_or_default()
     }
 
+    /// Replaces this rank's rows, and the nodes with friction among them. Returns those that were there.
+    pub(crate) fn replace_rows(
+        &mut self,
+        rows: Vec<Row>,
+        friction: Vec<FrictionNode>,
+    ) -> (Vec<Row>, Vec<FrictionNode>) {
+        (
+            std::mem::replace(&mut self.rows, rows),
+            std::mem::replace(&mut self.friction, friction),
+        )
+    }
+
     /// The loads on one subdomain, Σ|f|, the largest of this rank's.
     pub(crate) fn largest_load(&self) -> f64 {
         self.local.iter().map(Subdomain::load).fold(0.0, f64::max)

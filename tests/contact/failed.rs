@@ -34,7 +34,9 @@ fn a_solver_keeps_its_rows_where_others_are_refused() {
         let rows = solver.problem().rows.clone();
         let mut bad = rows.clone();
         bad[0].terms[0].0 = u64::MAX;
-        let refused = solver.set_rows(bad).expect_err("no subdomain has this dof");
+        let refused = solver
+            .set_rows(bad, Vec::new())
+            .expect_err("no subdomain has this dof");
         assert!(
             refused.to_string().contains("no subdomain holds"),
             "{refused}"
@@ -46,7 +48,9 @@ fn a_solver_keeps_its_rows_where_others_are_refused() {
         let after = solver.solve().expect("there is a solution");
         assert!(after.converged(), "{}", after.status);
         assert_eq!(before.u, after.u);
-        solver.set_rows(rows).expect("these rows are good");
+        solver
+            .set_rows(rows, Vec::new())
+            .expect("these rows are good");
         let again = solver.solve().expect("there is a solution");
         assert!(near(again.energy, before.energy, 1e-9), "{}", again.energy);
     });

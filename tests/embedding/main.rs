@@ -8,6 +8,7 @@ mod capi_c;
 mod capi_languages;
 mod clients;
 mod examples;
+mod friction;
 mod installed;
 mod ksp;
 mod languages;

@@ -81,8 +81,10 @@ impl Friction<'_> {
 
     /// Puts springs into rows, beside the compliance that they have of themselves. Collective.
     fn soften(&mut self, springs: Vec<f64>) {
-        let some = any(self.method.session.comm(), springs.iter().any(|s| *s > 0.0));
-        let was = !self.inner.springs.is_empty();
+        let comm = self.method.session.comm();
+        let some = any(comm, springs.iter().any(|s| *s > 0.0));
+        // A rank without rows has an empty list in either case.
+        let was = any(comm, !self.inner.springs.is_empty());
         if !some && !was {
             return;
         }

@@ -163,7 +163,7 @@ impl Jump {
             n_global,
             n_owned_local,
             n_local: total(comm, n_owned_local as f64) as usize,
-            gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
+            gap: zeros.clone().chain(rows.iter().map(|r| r.gap)).collect(),
             law: ties.chain(rows.iter().map(|r| r.law)).collect(),
             compliance: if is_soft { soft.collect() } else { Vec::new() },
             is_soft,

@@ -192,7 +192,7 @@ impl Run<'_> {
         let mut start = None;
         if let (Some(solver), Some(last)) = (&mut self.solver, &self.last) {
             if self.scene.is_renewed() {
-                solver.set_rows(self.present.solver_rows(&all))?;
+                solver.set_rows(self.present.solver_rows(&all), Vec::new())?;
                 start = warm(solver, &problem.rows, last);
             } else {
                 start = Some(last.warm_start());

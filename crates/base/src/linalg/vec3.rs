@@ -30,6 +30,22 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
+/// The unit vectors that are perpendicular to the unit vector `n`: one in the plane, two in space. Along an axis they
+/// are axes.
+pub fn tangents(n: [f64; 3], dim: usize) -> Vec<[f64; 3]> {
+    if dim == 2 {
+        return vec![[0.0 - n[1], n[0], 0.0]];
+    }
+    let least = (0..3).min_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));
+    let mut first = [0.0; 3];
+    first[least.expect("three components")] = 1.0;
+    let along = dot(first, n);
+    let mut first: [f64; 3] = std::array::from_fn(|c| first[c] - along * n[c]);
+    let size = dot(first, first).sqrt();
+    first.iter_mut().for_each(|v| *v /= size);
+    vec![first, cross(n, first)]
+}
+
 /// Centre and radius of the ball around a box from `low` to `high`.
 pub fn ball([low, high]: [[f64; 3]; 2]) -> ([f64; 3], f64) {
     let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));

@@ -13,7 +13,7 @@ use crate::model::friction::{ContactLaw, FrictionSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::SceneSpec;
 use crate::model::steps::Factors;
-use base::linalg::vec3::{cross, dot};
+use base::linalg::vec3::{dot, tangents};
 use base::{Error, Result};
 use fetifeti::problem::{FrictionBound, Law, RowSource};
 
@@ -230,22 +230,6 @@ impl Place<'_> {
         ))
         .at(&location))
     }
-}
-
-/// The unit vectors that are perpendicular to the unit vector `n`: one in the plane, two in space. Along an axis they
-/// are axes.
-fn tangents(n: [f64; 3], dim: usize) -> Vec<[f64; 3]> {
-    if dim == 2 {
-        return vec![[0.0 - n[1], n[0], 0.0]];
-    }
-    let least = (0..3).min_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));
-    let mut first = [0.0; 3];
-    first[least.expect("three components")] = 1.0;
-    let along = dot(first, n);
-    let mut first: [f64; 3] = std::array::from_fn(|c| first[c] - along * n[c]);
-    let size = dot(first, first).sqrt();
-    first.iter_mut().for_each(|v| *v /= size);
-    vec![first, cross(n, first)]
 }
 
 /// The tangential row beside a normal one, between the same nodes with the same weights.

@@ -81,7 +81,10 @@ impl Renewed {
         }
         self.end = left;
         let renewed = self.renew_at_end(solver.session(), step);
-        let set_up = renewed.and_then(|()| solver.set_rows(self.scene().solver_rows(owns)));
+        let set_up = renewed.and_then(|()| {
+            let scene = self.scene();
+            solver.set_rows(scene.solver_rows(owns), scene.friction_nodes(owns))
+        });
         set_up.map_err(|e| self.at_step(step, e))
     }
 
@@ -142,7 +145,7 @@ impl Renewed {
             known.get(&place?).copied()
         });
         let start: Vec<Option<(f64, bool)>> = start.collect();
-        solver.set_rows(rows)?;
+        solver.set_rows(rows, scene.friction_nodes(owns))?;
         let found = start.iter().filter(|s| s.is_some()).count();
         // Rows that are new hold to begin with, as all do where nothing is known.
         let new = |s: Option<(f64, bool)>| s.unwrap_or((0.0, true));

@@ -22,8 +22,8 @@ from .vtu import Fields, read_vtu
 if TYPE_CHECKING:
     from .ksp import inner_ksp, register, set_body, set_body_is, set_body_label
     from .calls import ContactStep, Error
-    from .contact import RowKind
-    from .solver import MortarResult, Solver
+    from .contact import ContactFriction, RowKind, RowState
+    from .solver import MortarFriction, MortarResult, Solver
     from .steps import LoadStep, LoadSteps
 
 _PLACES = {
@@ -35,7 +35,10 @@ _PLACES = {
     "Error": "calls",
     "Solver": "solver",
     "RowKind": "contact",
+    "RowState": "contact",
+    "ContactFriction": "contact",
     "ContactStep": "calls",
+    "MortarFriction": "solver",
     "MortarResult": "solver",
     "LoadStep": "steps",
     "LoadSteps": "steps",

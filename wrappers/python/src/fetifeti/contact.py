@@ -5,12 +5,12 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Mapping
 from enum import IntEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
 
-from .arrays import csr, for_each, integers
+from .arrays import csr, for_each, integers, reals
 from .calls import DECIDE, ERR_USER, MONITOR, ContactStep, call
 
 
@@ -26,6 +26,31 @@ class RowKind(IntEnum):
 EQUALITY, INEQUALITY = RowKind.EQUALITY, RowKind.INEQUALITY
 
 
+class RowState(IntEnum):
+    """The state of a row of contact after a solve."""
+
+    OPEN = 0
+    """The sides are apart."""
+    HOLDS = 1
+    """The row holds: an equation, or contact without a force of friction."""
+    STICK = 2
+    """In contact, and the sides stick to each other."""
+    SLIP = 3
+    """The sides slide, with the largest force of friction that the law allows."""
+
+
+class ContactFriction(NamedTuple):
+    """Friction at the n rows and pairs of this rank, in the order of `Solver.multipliers`."""
+
+    force: np.ndarray
+    """(n, components) The force with which the first side, that of a row's first term, drags the other one along."""
+    slip: np.ndarray
+    """(n, components) How far the first side has slid on the other one since the beginning of the load step, a length,
+    without the elastic part of a stick stiffness."""
+    state: np.ndarray
+    """(n,) Numbers of `RowState`."""
+
+
 class Contact:
     """Rows of a solver."""
 
@@ -33,6 +58,7 @@ class Contact:
     _ff: ctypes.c_void_p
     _rows: int
     _pairs: int
+    _components: int
     _monitor: Any
     _raised: BaseException | None
 
@@ -122,6 +148,65 @@ class Contact:
         """Forgets all pairs of `add_contact_pairs`. Collective."""
         call("FetiFetiSetContactPairs", self._ff, DECIDE, None, DECIDE, None, None, EQUALITY)
         self._pairs = 0
+
+    def set_contact_law(
+        self,
+        friction: Any = None,
+        limit: Any = None,
+        tresca: Any = None,
+        stiffness: Any = None,
+        stick_stiffness: Any = None,
+    ) -> None:
+        """Gives friction, and stiffnesses of soft contact, to the rows and pairs that this rank has given so far.
+
+        Each is a number or an array_like of shape (n,), in the order of `multipliers`; it takes the place of the law of
+        before. Laws belong to inequalities; rows that are given later have none. Friction needs nodes of 2 or 3
+        consecutive unknowns, the block size, and rows whose coefficients at a node give the normal.
+
+        Parameters
+        ----------
+        friction : float or array_like, optional
+            Coulomb's coefficient, 0 without friction.
+        limit : float or array_like, optional
+            The largest force of friction beside `friction`; numpy.inf where there is no limit.
+        tresca : float or array_like, optional
+            A given bound of the force in place of Coulomb's, whether or not the row touches; 0 without friction.
+        stiffness : float or array_like, optional
+            The multiplier over the overclosure of soft contact, a force per length; numpy.inf where contact is hard.
+        stick_stiffness : float or array_like, optional
+            The force of friction over the slip while the sides stick; numpy.inf where slip is never elastic.
+        """
+        n = self._rows + self._pairs
+        names = ("friction", "limit", "tresca", "stiffness", "stick_stiffness")
+        given = (friction, limit, tresca, stiffness, stick_stiffness)
+        laws = [None if v is None else for_each(v, n, name) for name, v in zip(names, given)]
+        call("FetiFetiSetContactLaw", self._ff, n, *laws)
+
+    def set_contact_slip(self, slip: Any = None) -> None:
+        """Says where the sides of rows with friction stand without a slip, in place of `next_contact_step`, which adds
+        the slips of the last solve to where they stood.
+
+        Parameters
+        ----------
+        slip : array_like, shape (n, components), optional
+            For each row and pair of this rank the displacement of the first side from the other one that counts as
+            none: slips so far, and the way of an obstacle that drags; left out: zero.
+        """
+        n, dim = self._rows + self._pairs, self._components
+        slip = None if slip is None else reals(slip, "slip", (n, dim))
+        call("FetiFetiSetContactSlip", self._ff, n, dim, slip)
+
+    def next_contact_step(self) -> None:
+        """Begins a load step: slips count from where the last solve has ended. On all ranks."""
+        call("FetiFetiNextContactStep", self._ff)
+
+    @property
+    def contact_friction(self) -> ContactFriction:
+        """Forces of friction, slips and states of the rows and pairs of this rank."""
+        n, dim = self._rows + self._pairs, self._components
+        out = ContactFriction(np.zeros((n, dim)), np.zeros((n, dim)), np.zeros(n, np.int32))
+        call("FetiFetiGetContactFriction", self._ff, n, dim, *out)
+        return out
 
     def on_step(self, callback: Callable[[ContactStep], Any] | None) -> None:
         """Sets a function that is called after each step of the contact loop, on all ranks; None: none.

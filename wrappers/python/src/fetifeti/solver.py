@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import Any, NamedTuple, Union
@@ -43,7 +44,19 @@ class MortarResult(NamedTuple):
     gap: np.ndarray
     """What remains of the gap, a length, (n,); infinite at nodes without a multiplier."""
     state: np.ndarray
-    """(n,) 1 where the row holds, 0 where the sides are apart, -1 at nodes without a multiplier."""
+    """(n,) Numbers of `RowState`, -1 at nodes without a multiplier."""
+
+
+class MortarFriction(NamedTuple):
+    """Friction of a mortar at the n nodes that this rank gave of its first surface, zero at nodes without it."""
+
+    force: np.ndarray
+    """(n, components) The force with which the first surface drags the second one along."""
+    shear: np.ndarray
+    """(n, components) The force over the area of the node's function, a shear stress."""
+    slip: np.ndarray
+    """(n, components) How far the first surface has slid on the second one since the beginning of the load step, a
+    length, without the elastic part of a stick stiffness."""
 
 
 class Solver(Contact, Surfaces):
@@ -93,6 +106,8 @@ class Solver(Contact, Surfaces):
 
     def _forget(self) -> None:
         self._rows = self._pairs = 0
+        self._block_size: int | None = None
+        self._of_matrices = 0
         self._surfaces: list[tuple[int, int]] = []
         self._mortars: list[tuple[int, RowKind]] = []
 
@@ -135,6 +150,12 @@ class Solver(Contact, Surfaces):
     def set_block_size(self, components: int) -> None:
         """Sets how many consecutive unknowns belong to a node: 2 in the plane, 3 in space, 1 for scalars."""
         call("FetiFetiSetBlockSize", self._ff, components)
+        self._block_size = components
+
+    @property
+    def _components(self) -> int:
+        """Unknowns of a node: as said, else the largest number that fits all matrices."""
+        return self._block_size or self._of_matrices or 1
 
     def add_subdomain(self, matrix: Any, dofs: Any, body: int | None = None) -> None:
         """Adds the stiffness matrix of one subdomain, as often as a rank likes.
@@ -163,6 +184,7 @@ class Solver(Contact, Surfaces):
             The body of this rank's subdomain, or left out on all ranks.
         """
         call("FetiFetiSetMatIS", self._ff, matrix, _number(body))
+        self._of_matrices = matrix.getBlockSize()
 
     def add_mat_is(self, matrix: PETSc.Mat, body: int | None = None, *, numbers: Any = None) -> None:
         """Adds the matrix of a body of several that were discretised by themselves, of type "is". Collective.
@@ -179,6 +201,7 @@ class Solver(Contact, Surfaces):
             second, and so on.
         """
         call("FetiFetiAddMatIS", self._ff, matrix, self._set(numbers, "numbers"), _number(body))
+        self._of_matrices = math.gcd(self._of_matrices, matrix.getBlockSize())
 
     def update_matrices(self, matrices: Sequence[PETSc.Mat | None]) -> None:
         """Takes new entries of the matrices that were added, for Newton's method and load steps. Collective.

@@ -12,7 +12,7 @@ from .calls import call
 
 if TYPE_CHECKING:
     from .contact import RowKind
-    from .solver import MortarResult
+    from .solver import MortarFriction, MortarResult
 
 
 class Surfaces:
@@ -77,7 +77,7 @@ class Surfaces:
         gaps: Any = None,
         without: Any = None,
     ) -> int:
-        """Ties two surfaces, or puts them in contact without friction, by mortar rows. Collective.
+        """Ties two surfaces, or puts them in contact, by mortar rows; `set_mortar_law` gives friction. Collective.
 
         Parameters
         ----------
@@ -111,14 +111,55 @@ class Surfaces:
         self._mortars.append((first, kind))
         return int(place[0])
 
+    def set_mortar_law(
+        self,
+        number: int = 0,
+        friction: float = 0.0,
+        limit: float = np.inf,
+        tresca: float = 0.0,
+        stiffness: float = np.inf,
+        stick_stiffness: float = np.inf,
+    ) -> None:
+        """Gives friction, and stiffnesses of soft contact, to a mortar in contact. Collective.
+
+        Parameters
+        ----------
+        number : int
+            The mortar.
+        friction : float
+            Coulomb's coefficient.
+        limit : float
+            The largest shear stress beside `friction`.
+        tresca : float
+            A given bound of the shear stress in place of Coulomb's, whether or not the sides touch.
+        stiffness : float
+            The pressure over the overclosure of soft contact.
+        stick_stiffness : float
+            The shear stress over the slip while the sides stick.
+        """
+        call("FetiFetiSetMortarLaw", self._ff, number, friction, limit, tresca, stiffness, stick_stiffness)
+
+    def mortar_friction(self, number: int = 0) -> MortarFriction:
+        """Friction of a mortar at the nodes that this rank gave of its first surface; `mortar` has their states."""
+        from .solver import MortarFriction
+
+        shape = self._surfaces[self._first(number)[0]]
+        out = MortarFriction(np.zeros(shape), np.zeros(shape), np.zeros(shape))
+        call("FetiFetiGetMortarFriction", self._ff, number, shape[0], *out)
+        return out
+
+    def _first(self, number: int) -> tuple[int, RowKind]:
+        """The first surface of a mortar, and its kind."""
+        if not 0 <= number < len(self._mortars):
+            raise ValueError(f"there is no mortar {number}, expected one of {len(self._mortars)} (from 0)")
+        return self._mortars[number]
+
     def mortar(self, number: int = 0) -> MortarResult:
         """The result of a mortar at the nodes that this rank gave of its first surface."""
         from .contact import INEQUALITY
         from .solver import MortarResult
 
-        if not 0 <= number < len(self._mortars):
-            raise ValueError(f"there is no mortar {number}, expected one of {len(self._mortars)} (from 0)")
-        first, kind = self._mortars[number]
+        first, kind = self._first(number)
         n, components = self._surfaces[first]
         shape = (n,) if kind == INEQUALITY else (n, components)
         out = MortarResult(np.zeros(shape), np.zeros(shape), np.zeros(n), np.zeros(n, np.int32))
