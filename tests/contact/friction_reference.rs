@@ -222,7 +222,8 @@ fn compare(ids: impl Iterator<Item = u64>) -> Tally {
         let iterations = tally.iterations[tally.iterations.len() / 2];
         println!(
             "{} right (forces within {:.1e}), {} undecided, {} not solved; rows that stick, slip, are apart: \
-             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}; iterations {iterations:.2}",
+             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}; iterations: median \
+             {iterations:.2}",
             tally.right, tally.force, tally.undecided, tally.failed
         );
         tally

@@ -96,8 +96,9 @@ impl<'a> Friction<'a> {
         Ok(tuning.friction.nothing * largest[0] + tuning.friction.even * rtol * self.inner.length)
     }
 
-    /// Takes the nodes to the states that follow from the step, in which the normal rows stay or not. Returns the number
-    /// of flips and the largest change of a force over all ranks, relative to the largest force of a row. Collective.
+    /// Takes the nodes to the states that follow from the step, in which the normal rows stay or not. Returns the
+    /// number of flips and the largest change of a force over all ranks, relative to the largest force of a row.
+    /// Collective.
     fn update(&mut self, stays: bool) -> Result<(usize, f64)> {
         let nothing = self.nothing()?;
         let comm = self.method.session.comm();

@@ -100,8 +100,8 @@ impl Node {
         }
     }
 
-    /// The turn that brings the first row along the slip, or where the node does not slip to its given direction; `None`
-    /// if it is there, and in the plane.
+    /// The turn that brings the first row along the slip, or where the node does not slip to its given direction;
+    /// `None` if it is there, and in the plane.
     pub fn turn(&mut self) -> Option<Turn> {
         let [a, b] = self.tangential[..] else {
             return None;
@@ -133,8 +133,8 @@ impl Node {
         }
     }
 
-    /// Whether the row across the slip is to hold. A spring much softer than the node costs iterations, and is not needed:
-    /// its force is small, and follows the slip from step to step.
+    /// Whether the row across the slip is to hold. A spring much softer than the node costs iterations, and is not
+    /// needed: its force is small, and follows the slip from step to step.
     fn is_stiff_across(&self) -> bool {
         self.tangential.len() == 2 && self.g > 0.0 && self.stiffness * self.slipped <= SOFT * self.g
     }
@@ -264,8 +264,8 @@ impl Node {
         }
     }
 
-    /// Lets the node slip if it sticks and slips all the same, because another contact holds it elsewhere. Returns whether
-    /// it does.
+    /// Lets the node slip if it sticks and slips all the same, because another contact holds it elsewhere. Returns
+    /// whether it does.
     pub fn gives_way(&mut self, step: &Step<'_>) -> bool {
         let slip = self.tangent(step)[1];
         let size = length(slip);

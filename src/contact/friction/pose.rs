@@ -29,9 +29,9 @@ impl Friction<'_> {
         Ok(())
     }
 
-    /// Takes tangential rows out of the set that depend on rigid rows in it, as at an edge where several contacts hold a
-    /// node: the normal row of one is a tangential row of another. Nothing slips along them, and without a force there
-    /// the equations are the same.
+    /// Takes tangential rows out of the set that depend on rigid rows in it, as at an edge where several contacts hold
+    /// a node: the normal row of one is a tangential row of another. Nothing slips along them, and without a force
+    /// there the equations are the same.
     fn drop_followers(&mut self, springs: &mut [f64]) {
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;

@@ -30,7 +30,8 @@ pub struct FrictionTuning {
     pub even: f64,
     /// A tangential row follows from other rows if not more than this of it lies outside their span.
     pub follows: f64,
-    /// The same of a row across a slip. Nearly all of it may be held by another contact, while the slip still turns.
+    /// A row across a slip follows from them up to this. Nearly all of it may be held by another contact, while the
+    /// slip still turns.
     pub across: f64,
     /// A body slides away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,

@@ -40,8 +40,8 @@ impl Block {
 
 impl Block {
     /// The rows in `later` that depend on those in `on` and on earlier ones in `later` that are `rigid`. Each is given
-    /// with the part of its length outside their span up to which it depends on them. `on` and `rigid` have an entry per
-    /// row of the block; none of the `later` rows is on.
+    /// with the part of its length outside their span up to which it depends on them. `on` and `rigid` have an entry
+    /// per row of the block; none of the `later` rows is on.
     pub fn followers(&self, on: &[bool], later: &[(usize, f64)], rigid: &[bool]) -> Vec<usize> {
         let mut all = on.to_vec();
         later.iter().for_each(|r| all[r.0] = true);

@@ -139,7 +139,8 @@ fn rows_in_space_are_turned_along_the_slip() {
     );
 }
 
-/// Another contact may hold a node that slips, and then its slip vanishes: it stays, and does not stick again and again.
+/// Another contact may hold a node that slips, and then its slip vanishes: it stays, and does not stick again and
+/// again.
 #[test]
 fn a_node_that_others_hold_stays_at_its_bound() {
     let slips = || node(RIGHT, 1.0);
