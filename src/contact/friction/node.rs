@@ -14,6 +14,9 @@ use crate::substructures::{FrictionBound, FrictionNode};
 /// Springs across slips are at most this many times softer than nodes.
 const SOFT: f64 = 100.0;
 
+/// Those that are stiffer than nodes by this are rigid.
+const RIGID: f64 = 1e-4;
+
 /// The state of a node in the equations of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NodeState {
@@ -150,7 +153,10 @@ impl Node {
     /// The compliance of the row across the slip; 0 unless it slips in space.
     pub fn across(&self) -> f64 {
         match self.state {
-            NodeState::Slip(_) if self.is_stiff_across() => self.slipped / self.g,
+            NodeState::Slip(_) if self.is_stiff_across() => {
+                let soft = self.stiffness * self.slipped > RIGID * self.g;
+                f64::from(u8::from(soft)) * self.slipped / self.g
+            }
             _ => 0.0,
         }
     }
@@ -233,11 +239,14 @@ impl Node {
         } else if size <= g || turns {
             NodeState::Stick
         } else {
-            // A slip that is more than rounding has its own direction.
+            // Where the row across does not hold, its multiplier says nothing of the direction.
             let w = length(slip);
-            match self.state {
-                NodeState::Slip(_) if w > step.nothing => NodeState::Slip(slip.map(|v| v / w)),
-                _ => NodeState::Slip(s.map(|s| s / size)),
+            let free = self
+                .slips_beside()
+                .is_some_and(|across| !step.active[across]);
+            match free && w > step.nothing {
+                true => NodeState::Slip(slip.map(|v| v / w)),
+                false => NodeState::Slip(s.map(|s| s / size)),
             }
         };
         (state, g)
