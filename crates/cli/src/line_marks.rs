@@ -9,8 +9,8 @@ use mesh::Mesh as BodyMesh;
 use report::pictures::field::{Arrow, ContactMark, Touch};
 use scene::Scene;
 
-/// The segments between neighbouring nodes that may touch, and whether and how they do. `at` is the place of
-/// the node of one of the two sides of a row.
+/// The segments between neighbouring nodes that may touch, and whether and how they do. `at` is the place of the
+/// node of one of the two sides of a row.
 pub(super) fn marks(
     scene: &Scene,
     rows: &[SolvedRow],

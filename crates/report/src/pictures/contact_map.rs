@@ -57,7 +57,7 @@ impl ContactMap {
         }
     }
 
-    /// How a face touches: it sticks where all its nodes stick, and slips where all touch and some slip.
+    /// How a face touches, where all its nodes do: it slips where some slip, and sticks where others stick.
     fn touch(&self, cell: &[u32; 4]) -> Touch {
         let of = |&k: &u32| {
             let state = self.nodes.friction.get(k as usize).map(|f| f.state);
@@ -177,8 +177,10 @@ fn draw(maps: &[ContactMap], title: &str) -> Raster {
     // Arrows of one length are one stress in all maps.
     let shear: Vec<Arrow> = order.iter().flat_map(|m| m.shear()).collect();
     let largest = arrows::largest(&shear, LONGEST);
-    let below = marks::legend_height(&all);
-    let content = (columns as f64 * cell.0, rows as f64 * cell.1 + below);
+    let label = largest.map(|s| format!("shear stress, at most {}", ticks::number(s)));
+    let (wide_legend, below) = marks::legend_size(&all, label.as_deref());
+    let wide = (columns as f64 * cell.0).max(wide_legend);
+    let content = (wide, rows as f64 * cell.1 + below);
     let (mut raster, width, top) = sheet(&title, content);
     for (k, (map, outline)) in order.iter().zip(&outlines).enumerate() {
         let at = (
@@ -188,7 +190,6 @@ fn draw(maps: &[ContactMap], title: &str) -> Raster {
         panel(&mut raster, map, outline, largest, at);
     }
     let middle = top + rows as f64 * cell.1 + 0.5 * below - 4.0;
-    let label = largest.map(|s| format!("shear stress, at most {}", ticks::number(s)));
     marks::legend(&mut raster, &all, label.as_deref(), (0.5 * width, middle));
     raster
 }

@@ -90,11 +90,12 @@ fn draw(
     );
     let n = fields.len().max(1) as f64;
     let (columns, rows) = if wide { (1.0, n) } else { (n, 1.0) };
-    let below = marks::legend_height(marked.contact);
-    let content = (columns * cell.0, rows * cell.1 + below);
     let body_width = (w * h / mesh.count(mesh.body).max(1) as f64).sqrt();
     let longest = f64::min(LONGEST, 0.3 * body_width);
     let largest = arrows::largest(marked.tractions, longest);
+    let traction = largest.map(|t| format!("traction, at most {}", ticks::number(t)));
+    let (wide_legend, below) = marks::legend_size(marked.contact, traction.as_deref());
+    let content = ((columns * cell.0).max(wide_legend), rows * cell.1 + below);
     let (mut raster, width, top) = sheet(title, content);
     for (k, field) in fields.iter().enumerate() {
         let at = if wide {
@@ -150,7 +151,6 @@ fn draw(
         );
     }
     let middle = top + rows * cell.1 + 0.5 * below - 4.0;
-    let traction = largest.map(|t| format!("traction, at most {}", ticks::number(t)));
     marks::legend(
         &mut raster,
         marked.contact,

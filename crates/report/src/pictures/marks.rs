@@ -36,13 +36,14 @@ impl Touch {
     /// All of them, in the order in which they are drawn: closed parts must not be hidden where they meet open ones.
     const ALL: [Touch; 4] = [Touch::Open, Touch::Closed, Touch::Slips, Touch::Sticks];
 
-    /// That of the state of a node with friction; `touches` says whether one without friction touches.
+    /// The kind of a node of this state of friction; `touches` says whether a node that neither sticks nor slips
+    /// touches, as one that given values hold does.
     pub fn of_state(state: Option<&str>, touches: bool) -> Touch {
         match (state, touches) {
             (Some("stick"), _) => Touch::Sticks,
             (Some("slip"), _) => Touch::Slips,
-            (Some("open"), _) | (_, false) => Touch::Open,
             (_, true) => Touch::Closed,
+            (_, false) => Touch::Open,
         }
     }
 
@@ -83,13 +84,24 @@ const BORDER: f64 = 1.4;
 const SAMPLE: f64 = 34.0;
 const DASH: [f64; 2] = [4.0, 3.0];
 
-/// Height of the legend in logical pixels; zero without marks.
-pub(super) fn legend_height(marks: &[ContactMark]) -> f64 {
+/// Width and height of the legend in logical pixels; zero without marks.
+pub(super) fn legend_size(marks: &[ContactMark], arrow: Option<&str>) -> (f64, f64) {
     if marks.is_empty() {
-        0.0
+        (0.0, 0.0)
     } else {
-        24.0
+        let width = paint::legend_width(&entries(marks, arrow), SAMPLE);
+        (width + BORDER + 16.0, 24.0)
     }
+}
+
+/// The kinds of line that there are, and the arrow, `None`, if it has a label.
+fn entries<'a>(marks: &[ContactMark], arrow: Option<&'a str>) -> Vec<(Option<Touch>, &'a str)> {
+    let order = [Touch::Closed, Touch::Sticks, Touch::Slips, Touch::Open];
+    let there = order
+        .iter()
+        .filter(|t| marks.iter().any(|m| m.touch == **t));
+    let lines = there.map(|t| (Some(*t), t.label()));
+    lines.chain(arrow.map(|label| (None, label))).collect()
 }
 
 /// Draws the marks; `spacing` is the width of a typical body in logical pixels.
@@ -124,12 +136,7 @@ pub(super) fn legend(
     arrow: Option<&str>,
     middle: (f64, f64),
 ) {
-    let order = [Touch::Closed, Touch::Sticks, Touch::Slips, Touch::Open];
-    let there = order
-        .iter()
-        .filter(|t| marks.iter().any(|m| m.touch == **t));
-    let mut shown: Vec<(Option<Touch>, &str)> = there.map(|t| (Some(*t), t.label())).collect();
-    shown.extend(arrow.map(|label| (None, label)));
+    let shown = entries(marks, arrow);
     paint::legend(raster, &shown, SAMPLE, middle, |raster, (x, y), what| {
         let to = (x + SAMPLE, y);
         match what {

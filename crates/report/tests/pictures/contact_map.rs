@@ -1,6 +1,7 @@
 //! Unit tests of `crates/report/src/pictures/contact_map.rs`.
 
 use super::*;
+use crate::drawing::canvas::Colour;
 use crate::interfaces::NodeFriction;
 use crate::scratch::Scratch;
 
@@ -110,6 +111,25 @@ fn sticking_and_slipping_faces_have_outlines_of_their_own() {
     // Nodes that are apart have no arrow.
     map.nodes.active.fill(false);
     assert!(map.shear().is_empty());
+}
+
+#[test]
+fn the_legend_fits_into_the_picture() {
+    let mut map = sample("a|b", 4, 1.0);
+    let state = |k: usize| ["stick", "slip", "open"][k / 10];
+    let node = |k: usize| NodeFriction {
+        state: state(k),
+        shear: [1.0 / 3.0, 0.0, 0.0],
+        bound: 1.0,
+        slip: [0.0; 3],
+    };
+    map.nodes.friction = (0..25).map(node).collect();
+    map.nodes.active = (0..25).map(|k| state(k) != "open").collect();
+    let picture = draw(&[map], "");
+    let (w, h) = picture.size();
+    let white = |x: usize| (h - 48..h).all(|y| picture.get(x, y) == Colour::WHITE);
+    assert!((0..6).chain(w - 6..w).all(white));
+    assert!((0..w).any(|x| !white(x)));
 }
 
 #[test]
