@@ -11,6 +11,7 @@ mod contact;
 mod deck;
 mod elastic;
 mod energy;
+mod friction;
 mod input;
 mod limits;
 mod mortar;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::friction;
+use super::friction::{self, FrictionRows};
 use super::smoothed::smoothed;
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::solution::{SolvedRow, Step};
@@ -151,11 +151,11 @@ pub(super) fn with_inequalities<'a>(
     groups.filter(|(rows, _)| rows.iter().any(|r| r.is_inequality()))
 }
 
-/// The nodes of one interface or obstacle, with their areas if `areas` is set; `tangential` are all such rows.
+/// The nodes of one interface or obstacle, with their areas if `areas` is set; `friction` has all rows of friction.
 pub(super) fn nodes(
     scene: &Scene,
     (rows, smoothed): (&[SolvedRow], Vec<f64>),
-    tangential: &[SolvedRow],
+    friction: &FrictionRows,
     areas: bool,
 ) -> InterfaceNodes {
     let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
@@ -172,7 +172,7 @@ pub(super) fn nodes(
             Vec::new()
         },
         smoothed,
-        friction: friction::along(rows, tangential),
+        friction: friction::along(rows, friction),
     }
 }
 
@@ -180,7 +180,7 @@ pub(super) fn nodes(
 pub fn profiles(
     scene: &Scene,
     rows: &[SolvedRow],
-    tangential: &[SolvedRow],
+    friction: &FrictionRows,
 ) -> Vec<InterfaceProfile> {
     let profile = |(rows, smoothed): (&[SolvedRow], Vec<f64>)| {
         let along = match rows[0].label.source {
@@ -195,7 +195,7 @@ pub fn profiles(
         let body = rows[0].body();
         let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
         InterfaceProfile {
-            nodes: nodes(scene, (rows, smoothed), tangential, scene.has_pressure()),
+            nodes: nodes(scene, (rows, smoothed), friction, scene.has_pressure()),
             label: if curved { "t" } else { ["x", "y"][along] }.into(),
         }
     };

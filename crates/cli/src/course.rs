@@ -6,7 +6,8 @@ use super::early::Early;
 use super::events::Events;
 use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
-use super::{balance, contact, friction};
+use super::friction::{self, FrictionRows};
+use super::{balance, contact};
 use crate::checkpoint::Checkpoints;
 use base::Result;
 use fetifeti::solution::SolvedRow;
@@ -40,8 +41,8 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
-    /// Tangential rows of nodes with friction on rank 0.
-    pub tangential: Vec<SolvedRow>,
+    /// Rows of friction on rank 0.
+    pub friction: FrictionRows,
     /// The forces on every body in balance, on rank 0.
     pub balances: Vec<BodyBalance>,
     /// A warning about the bodies that are not in balance, on rank 0.
@@ -50,6 +51,13 @@ pub(super) struct Course {
     pub slides: Option<contact::Slides>,
     /// The fields of this solution, where load steps are written.
     pub fields: Option<Gathered>,
+}
+
+impl Course {
+    /// The rows of B_gl and the tangential ones.
+    pub fn contact(&self) -> (&[SolvedRow], &[SolvedRow]) {
+        (&self.rows, &self.friction.rows)
+    }
 }
 
 /// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
@@ -137,7 +145,7 @@ pub(super) fn follow(
             load_steps: Vec::new(),
             solve_seconds: seconds[0],
             recover_seconds: seconds[1],
-            tangential: friction::tangential(session, &solved.solution),
+            friction: FrictionRows::new(session, solver, &solved.solution),
             solution: solved.solution,
             rows,
             balances: balances.into_iter().map(|b| b.record).collect(),
@@ -159,7 +167,7 @@ pub(super) fn follow(
             };
             fields.gather(session, scene, solver, &now.solution, step);
             let name = step_name(step);
-            fields.write_vtu(session, scene, &now.solution, &now.rows, dir, &name)?;
+            fields.write_vtu(session, scene, &now.solution, now.contact(), dir, &name)?;
             let file = dir.join(place.file(&name));
             on_first_rank(session, || pvd.add(t, &file))?;
         }
@@ -220,7 +228,7 @@ fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
         energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
         slid: contact::recorded(slid),
-        friction: friction::force(scene, &course.tangential),
+        friction: friction::force(scene, &course.friction.rows),
         ..LoadStep::default()
     }
 }

@@ -2,24 +2,52 @@
 
 use std::collections::HashMap;
 
-use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::problem::{BodyNode, FrictionNode, RowSource};
 use fetifeti::solution::{RowState, SolvedRow};
-use fetifeti::Solution;
+use fetifeti::{FetiFeti, Solution};
 use petsc::Session;
 use report::interfaces::NodeFriction;
 use report::json::friction::{FrictionExtremes, FrictionForce};
+use report::paraview::friction_fields::{ContactState, PointFriction};
 use scene::Scene;
 
-/// All tangential rows on rank 0, ordered as the rows of the report are; empty on the other ranks. Collective.
-pub fn tangential(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
-    let mut rows = SolvedRow::on_first_rank(session.comm(), solution.tangential_rows());
-    rows.sort_by(SolvedRow::by_place);
-    rows
+/// The rows of friction on rank 0, ordered as the rows of the report are; none on the other ranks.
+pub struct FrictionRows {
+    /// All tangential rows.
+    pub rows: Vec<SolvedRow>,
+    /// The normal row of each node with friction, with the bound of the force of friction as its multiplier.
+    bounds: Vec<SolvedRow>,
+}
+
+impl FrictionRows {
+    /// The rows of friction of a solution. Collective.
+    pub fn new(session: &Session, solver: &FetiFeti, solution: &Solution) -> FrictionRows {
+        let normal = solution.rows();
+        let bound = |node: &FrictionNode| {
+            let mut row = *normal.get(node.normal)?;
+            row.multiplier = node.bound.at(row.multiplier);
+            Some(row)
+        };
+        let bounds: Vec<SolvedRow> = { solver.problem().friction.iter() }
+            .filter_map(bound)
+            .collect();
+        let sorted = |rows: &[SolvedRow]| {
+            let mut rows = SolvedRow::on_first_rank(session.comm(), rows);
+            rows.sort_by(SolvedRow::by_place);
+            rows
+        };
+        FrictionRows {
+            rows: sorted(solution.tangential_rows()),
+            bounds: sorted(&bounds),
+        }
+    }
 }
 
 /// A node with friction.
 #[derive(Debug, Clone, Copy)]
 pub struct FrictionAt {
+    /// The nodes of both sides; an obstacle has none.
+    members: [Option<BodyNode>; 2],
     /// The force with which the first body drags the other side along.
     pub drag: [f64; 3],
     /// The slip of the load step: of the first body beside the other side.
@@ -30,9 +58,29 @@ pub struct FrictionAt {
     area: f64,
 }
 
+impl FrictionAt {
+    /// Friction on the body of each side: the sides feel opposite forces and slips.
+    pub fn on_bodies(&self) -> impl Iterator<Item = (BodyNode, PointFriction)> + '_ {
+        let sides = self.members.into_iter().zip([1.0, -1.0]);
+        sides.filter_map(|(member, sign)| {
+            let at = PointFriction {
+                force: self.drag.map(|f| 0.0 - sign * f),
+                slip: self.slip.map(|w| 0.0 + sign * w),
+                state: match self.state {
+                    RowState::Sticks => ContactState::Stick,
+                    RowState::Slips => ContactState::Slip,
+                    _ => ContactState::Open,
+                },
+            };
+            Some((member?, at))
+        })
+    }
+}
+
 /// The node of tangential rows with the same members.
 fn node(rows: &[SolvedRow]) -> FrictionAt {
     let mut out = FrictionAt {
+        members: rows[0].label.members,
         drag: [0.0; 3],
         slip: [0.0; 3],
         state: RowState::Open,
@@ -103,14 +151,18 @@ pub fn extremes(rows: &[SolvedRow]) -> Option<FrictionExtremes> {
 }
 
 /// Friction at the node of each of these rows of one source; empty without friction.
-pub fn along(rows: &[SolvedRow], tangential: &[SolvedRow]) -> Vec<NodeFriction> {
-    let own = match rows.first() {
-        Some(row) => of_source(tangential, row.label.source),
-        None => &[],
+pub fn along(rows: &[SolvedRow], friction: &FrictionRows) -> Vec<NodeFriction> {
+    let Some(source) = rows.first().map(|row| row.label.source) else {
+        return Vec::new();
     };
+    let own = of_source(&friction.rows, source);
     if own.is_empty() {
         return Vec::new();
     }
+    let bounds = of_source(&friction.bounds, source).iter();
+    let bounds: HashMap<[Option<BodyNode>; 2], f64> = bounds
+        .map(|row| (row.label.members, row.multiplier))
+        .collect();
     let same = |a: &SolvedRow, b: &SolvedRow| a.label.members == b.label.members;
     let groups = own
         .chunk_by(same)
@@ -125,9 +177,11 @@ pub fn along(rows: &[SolvedRow], tangential: &[SolvedRow]) -> Vec<NodeFriction> 
             (true, _) => "open",
         };
         let shear = |c: usize| at.map_or(0.0, |f| -f.drag[c] / f.area);
+        let bound = bounds.get(&row.label.members).zip(at);
         NodeFriction {
             state,
             shear: std::array::from_fn(|c| shear(c) + 0.0),
+            bound: bound.map_or(0.0, |(force, f)| force / f.area),
             slip: std::array::from_fn(|c| at.map_or(0.0, |f| f.slip[c] + 0.0)),
         }
     };

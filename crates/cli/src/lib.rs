@@ -17,6 +17,7 @@ mod fields;
 mod first_rank;
 mod friction;
 mod inputs;
+mod line_marks;
 mod maps;
 mod pages;
 mod parse;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::contact::{carrier, nodes, side, with_inequalities};
+use super::friction::FrictionRows;
 use elements::kind::CellKind;
 use fetifeti::solution::SolvedRow;
 use report::pictures::contact_map::ContactMap;
@@ -14,16 +15,16 @@ use scene::Scene;
 const STEEP: f64 = 0.4;
 
 /// The maps of all interfaces and obstacles that have inequalities.
-pub(super) fn of(scene: &Scene, rows: &[SolvedRow], tangential: &[SolvedRow]) -> Vec<ContactMap> {
+pub(super) fn of(scene: &Scene, rows: &[SolvedRow], friction: &FrictionRows) -> Vec<ContactMap> {
     with_inequalities(scene, rows)
-        .map(|found| map(scene, found, tangential))
+        .map(|found| map(scene, found, friction))
         .collect()
 }
 
 fn map(
     scene: &Scene,
     (rows, smoothed): (&[SolvedRow], Vec<f64>),
-    tangential: &[SolvedRow],
+    friction: &FrictionRows,
 ) -> ContactMap {
     let along = |d: usize| {
         let least = |a: f64, r: &SolvedRow| a.min(r.normal()[d].abs());
@@ -66,7 +67,7 @@ fn map(
         }
     }
     ContactMap {
-        nodes: nodes(scene, (rows, smoothed), tangential, true),
+        nodes: nodes(scene, (rows, smoothed), friction, true),
         labels,
         at,
         cells,

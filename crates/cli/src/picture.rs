@@ -4,15 +4,16 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::contact::{by_source, side};
+use super::contact::by_source;
 use super::fields::Gathered;
+use super::friction::FrictionRows;
+use super::line_marks;
 use base::linalg::vec3::{dot, minus, norm};
 use base::Result;
 use fetifeti::problem::RowSource;
 use fetifeti::solution::SolvedRow;
-use mesh::Mesh as BodyMesh;
 use report::drawing::ticks::number;
-use report::pictures::field::{self, ContactMark, PlaneMesh, ShownField};
+use report::pictures::field::{self, Marked, PlaneMesh, ShownField};
 use report::pictures::mesh::bounds;
 use report::pictures::obstacles::ShownObstacle;
 use report::pictures::pieces::pieces;
@@ -34,7 +35,7 @@ const VISIBLE_CONTACT: f64 = 0.01;
 pub(super) fn write(
     scene: &Scene,
     all: &Gathered,
-    rows: &[SolvedRow],
+    (rows, friction): (&[SolvedRow], &FrictionRows),
     step: usize,
     dir: &Path,
 ) -> Result<()> {
@@ -105,15 +106,18 @@ pub(super) fn write(
         }
     }
     let copies = all.copies(rows);
-    let at = |row: &SolvedRow| {
-        let copy = row.label.members[0].and_then(|m| copies.get(&m));
+    let at = |row: &SolvedRow, member: usize| {
+        let copy = row.label.members[member].and_then(|m| copies.get(&m));
         let point = copy
             .filter(|_| elastic)
             .map_or(row.label.point, |c| moved.points[c[0]]);
         [point[0], point[1]]
     };
-    let marks = line_marks(scene, rows, &at);
-    field::write(&beside, &mesh, &fields, &marks, elastic, &title, &path)
+    let marked = Marked {
+        contact: &line_marks::marks(scene, rows, friction, &at),
+        tractions: &line_marks::tractions(scene, rows, friction, &at),
+    };
+    field::write(&beside, &mesh, &fields, &marked, elastic, &title, &path)
 }
 
 /// The rigid bodies of the scene, each once, with the gap of the row that is nearest to contact: rows say
@@ -270,53 +274,6 @@ fn factor(largest: f64, size: f64, from: f64, most: f64) -> f64 {
     } else {
         1.0
     }
-}
-
-/// The segments between neighbouring nodes that may touch, and whether they do.
-fn line_marks(
-    scene: &Scene,
-    rows: &[SolvedRow],
-    at: &dyn Fn(&SolvedRow) -> [f64; 2],
-) -> Vec<ContactMark> {
-    let mut out = Vec::new();
-    for all in by_source(rows) {
-        let rows: Vec<&SolvedRow> = all.iter().filter(|r| r.is_inequality()).collect();
-        if let [only] = rows[..] {
-            out.push(ContactMark {
-                from: at(only),
-                to: at(only),
-                closed: only.holds(),
-            });
-        }
-        let mut mark = |a: &SolvedRow, b: &SolvedRow| {
-            out.push(ContactMark {
-                from: at(a),
-                to: at(b),
-                closed: a.holds() && b.holds(),
-            });
-        };
-        let side = side(scene, all).map(|(body, side)| (&scene.bodies[body].spec, side));
-        match side.filter(|(spec, _)| matches!(spec.mesh, BodyMesh::Cells(_))) {
-            // Along the side of a box nodes follow each other; elsewhere its cells say which are neighbours.
-            None => rows.windows(2).for_each(|pair| mark(pair[0], pair[1])),
-            Some((spec, side)) => {
-                let of_node = rows.iter().filter_map(|r| Some((r.node()?, *r)));
-                let of_node: HashMap<usize, &SolvedRow> = of_node.collect();
-                for face in spec.faces(side) {
-                    let rows = face.nodes.iter().map(|node| of_node.get(node).copied());
-                    match rows.collect::<Option<Vec<_>>>().as_deref() {
-                        Some(&[a, b]) => mark(a, b),
-                        Some(&[a, b, middle]) => {
-                            mark(a, middle);
-                            mark(middle, b);
-                        }
-                        _ => {}
-                    }
-                }
-            }
-        }
-    }
-    out
 }
 
 /// The faces of elements all of whose nodes are tied or may touch, on both bodies of an interface.

@@ -254,7 +254,7 @@ fn contact_report(
         steps: course.outer.clone(),
         interfaces: contact::forces(
             scene,
-            (&course.rows, &course.tangential),
+            (&course.rows, &course.friction.rows),
             course.slides.as_ref(),
         ),
         bodies: course.balances.clone(),

@@ -274,7 +274,7 @@ fn write_fields(
         Some(fields) => fields,
         None => known.insert(gathered(place)?),
     };
-    let rows = &course.rows;
+    let rows = course.contact();
     fields.write_vtu(session, scene, &course.solution, rows, dir, "solution")?;
     // The picture shows the whole scene.
     let mut whole = None;
@@ -283,19 +283,18 @@ fn write_fields(
         GatherTarget::EachRank => whole.insert(gathered(GatherTarget::FirstRank)?),
     };
     on_first_rank(session, || {
-        picture::write(scene, fields, &course.rows, course.step, dir)?;
+        let friction = &course.friction;
+        picture::write(scene, fields, (&course.rows, friction), course.step, dir)?;
         if solver.facts().inequalities > 0 {
             match scene.dim() {
                 2 => profile::write(
-                    &contact::profiles(scene, &course.rows, &course.tangential),
+                    &contact::profiles(scene, &course.rows, friction),
                     &scene.title,
                     dir,
                 )?,
-                _ => contact_map::write(
-                    &maps::of(scene, &course.rows, &course.tangential),
-                    &scene.title,
-                    dir,
-                )?,
+                _ => {
+                    contact_map::write(&maps::of(scene, &course.rows, friction), &scene.title, dir)?
+                }
             };
         }
         if !course.load_steps.is_empty() {

@@ -34,6 +34,8 @@ pub struct NodeFriction {
     pub state: &'static str,
     /// The shear stress of friction on the first body, or on the body of an obstacle; NaN where a node has no area.
     pub shear: [f64; 3],
+    /// The bound of the shear stress: μ p in Coulomb's law without a limit; NaN where a node has no area.
+    pub bound: f64,
     /// The slip of the first body beside the other side in the load step.
     pub slip: [f64; 3],
 }
@@ -95,7 +97,7 @@ impl InterfaceNodes {
 /// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area;
 /// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures. Where an
 /// interface has smoothed pressures, all of them have a column pressure_smoothed. Where one has friction, all of them
-/// have the columns state, shear_x, … and slip_x, …, which are empty on the others.
+/// have the columns state, shear_x, …, shear_bound and slip_x, …, which are empty on the others.
 pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
     let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
     let smoothed = interfaces.iter().any(|(i, _)| !i.smoothed.is_empty());
@@ -128,6 +130,7 @@ pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, soli
                     at(i, *k).map(|f| f.shear[c])
                 });
             }
+            t = t.exact("shear_bound", move |(i, _, k)| at(i, *k).map(|f| f.bound));
             for (c, axis) in axes().enumerate() {
                 t = t.exact(format!("slip_{axis}"), move |(i, _, k)| {
                     at(i, *k).map(|f| f.slip[c])

@@ -7,7 +7,7 @@ use crate::paraview::contact_fields::ContactFields;
 use crate::paraview::pvd::Pvd;
 use crate::paraview::vtu::Vtu;
 use crate::pictures::field;
-use crate::pictures::field::{ContactMark, PlaneMesh, ShownField};
+use crate::pictures::field::{ContactMark, Marked, PlaneMesh, ShownField, Touch};
 use crate::plots::load_steps;
 use crate::plots::profile;
 use crate::plots::profile::InterfaceProfile;
@@ -139,7 +139,7 @@ impl Bodies {
             let mark = |k: usize| ContactMark {
                 from: at(k),
                 to: at(k + 1),
-                closed: nodes.active[k] && nodes.active[k + 1],
+                touch: Touch::of_state(None, nodes.active[k] && nodes.active[k + 1]),
             };
             (0..nodes.t.len() - 1).map(mark).collect::<Vec<_>>()
         };
@@ -181,12 +181,12 @@ fn two_interfaces() {
     marks.extend((0..32).map(|k| ContactMark {
         from: [f64::from(k) / 32.0, 0.0],
         to: [f64::from(k + 1) / 32.0, 0.0],
-        closed: (8..20).contains(&k),
+        touch: Touch::of_state(None, (8..20).contains(&k)),
     }));
     marks.push(ContactMark {
         from: [2.5, 1.0],
         to: [2.5, 1.0],
-        closed: true,
+        touch: Touch::Closed,
     });
     let path = dir.join("solution.png");
     field::write(
@@ -196,7 +196,10 @@ fn two_interfaces() {
             ShownField::nodal("solution u", &u),
             ShownField::coefficient("coefficient ρ", &rho),
         ],
-        &marks,
+        &Marked {
+            contact: &marks,
+            tractions: &[],
+        },
         false,
         "three bodies in a row",
         &path,
@@ -211,7 +214,7 @@ fn two_interfaces() {
             ShownField::nodal("solution u", &u),
             ShownField::coefficient("coefficient ρ", &rho),
         ],
-        &[],
+        &Marked::default(),
         false,
         "three bodies in a row",
         &plain,
@@ -248,7 +251,10 @@ fn one_hundred_and_eighty_interfaces() {
             ShownField::nodal("solution u", &u),
             ShownField::coefficient("coefficient ρ", &rho),
         ],
-        &marks,
+        &Marked {
+            contact: &marks,
+            tractions: &[],
+        },
         false,
         "10 × 10 bodies",
         &path,

@@ -14,7 +14,7 @@ use crate::substructures::{FrictionBound, FrictionNode};
 /// Springs across slips are at most this many times softer than nodes.
 const SOFT: f64 = 100.0;
 
-/// Those that are stiffer than nodes by this are rigid.
+/// Springs that are stiffer than nodes by this factor are rigid.
 const RIGID: f64 = 1e-4;
 
 /// The state of a node in the equations of a step.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{GatherTarget, Gathered};
 use crate::first_rank::on_first_rank;
+use crate::friction;
 use crate::smoothed::smoothed;
 use base::Result;
 use elements::cell::CellStress;
@@ -32,35 +33,61 @@ fn piece(name: &str, rank: usize) -> String {
     format!("{name}_{rank:04}.vtu")
 }
 
+/// The rows of contact near the points of a grid, and what there is on any rank: pieces of a grid have the same arrays.
+struct ContactRows<'a> {
+    rows: &'a [SolvedRow],
+    /// The rows of friction, those of a node one after the other.
+    tangential: &'a [SolvedRow],
+    /// Whether some sides may touch.
+    contact: bool,
+    /// Whether some have friction.
+    friction: bool,
+}
+
 impl Gathered {
-    /// Writes `NAME.vtu` into `dir`, or a piece from every rank and `NAME.pvtu`. `rows` are those of all ranks on rank
-    /// 0. Collective.
+    /// Writes `NAME.vtu` into `dir`, or a piece from every rank and `NAME.pvtu`. `rows` and `tangential` are those of
+    /// all ranks on rank 0. Collective.
     pub fn write_vtu(
         &self,
         session: &Session,
         scene: &Scene,
         solution: &Solution,
-        rows: &[SolvedRow],
+        (rows, tangential): (&[SolvedRow], &[SolvedRow]),
         dir: &Path,
         name: &str,
     ) -> Result<()> {
         let path = dir.join(self.place.file(name));
         let own = solution.rows();
-        let contact = any(session.comm(), own.iter().any(SolvedRow::is_inequality));
+        let sheared = solution.tangential_rows();
+        let has = |rows: &[SolvedRow], of: fn(&SolvedRow) -> bool| {
+            any(session.comm(), rows.iter().any(of))
+        };
+        let contact = has(own, SolvedRow::is_inequality);
+        let friction = has(sheared, |row| row.law.is_friction());
+        let shown = |rows, tangential| ContactRows {
+            rows,
+            tangential,
+            contact,
+            friction,
+        };
         if self.place == GatherTarget::FirstRank {
+            let shown = shown(rows, tangential);
             return on_first_rank(session, || {
-                self.grid(scene, (rows, contact), &mut |grid| grid.write(&path))
+                self.grid(scene, &shown, &mut |grid| grid.write(&path))
             });
         }
         let ranks_of = distribution::ranks_of(session, scene)?;
-        let rows = SolvedRow::near_bodies(session.comm(), own, ranks_of);
+        let rows = SolvedRow::near_bodies(session.comm(), own, &ranks_of);
+        let mut tangential = SolvedRow::near_bodies(session.comm(), sheared, &ranks_of);
+        tangential.sort_by(SolvedRow::by_place);
+        let shown = shown(&rows, &tangential);
         let pieces: Vec<String> = (0..session.size()).map(|r| piece(name, r)).collect();
         let mine = dir.join(&pieces[session.rank()]);
-        session.agree(self.grid(scene, (&rows, contact), &mut |grid| grid.write(&mine)))?;
+        session.agree(self.grid(scene, &shown, &mut |grid| grid.write(&mine)))?;
         // ParaView finds the index only when its pieces are there.
         on_first_rank(session, || {
             let write = &mut |grid: &Vtu| grid.write_index(&path, &pieces);
-            self.grid(scene, (&rows, contact), write)
+            self.grid(scene, &shown, write)
         })
     }
 
@@ -68,16 +95,13 @@ impl Gathered {
     fn grid(
         &self,
         scene: &Scene,
-        (rows, contact): (&[SolvedRow], bool),
+        shown: &ContactRows,
         write: &mut dyn FnMut(&Vtu) -> Result<()>,
     ) -> Result<()> {
         let whole = |list: &[u32]| list.iter().map(|&k| k as i32).collect::<Vec<i32>>();
         let [body, subdomain, rank] = [&self.body, &self.subdomain, &self.rank].map(|l| whole(l));
-        let contact = if contact {
-            Some(self.contact_fields(scene, rows)?)
-        } else {
-            None
-        };
+        let contact = shown.contact.then(|| self.contact_fields(scene, shown));
+        let contact = contact.transpose()?;
         let (c, u) = self.vectors(scene);
         let mut grid = Vtu::new(&self.points, &self.cells).point_data("u", c, &u[..]);
         if let Some(contact) = &contact {
@@ -116,8 +140,9 @@ impl Gathered {
         write(&grid)
     }
 
-    /// Multiplier, gap and contact at the points.
-    fn contact_fields(&self, scene: &Scene, rows: &[SolvedRow]) -> Result<ContactFields> {
+    /// Multiplier, gap, contact and friction at the points.
+    fn contact_fields(&self, scene: &Scene, shown: &ContactRows) -> Result<ContactFields> {
+        let rows = shown.rows;
         let copies = self.copies(rows);
         let mut fields = ContactFields::new(self.points.len());
         if scene.has_pressure() {
@@ -137,6 +162,16 @@ impl Gathered {
                         fields.add_area(p, row.label.area)?;
                         fields.add_smoothed(p, smoothed * row.label.area);
                     }
+                }
+            }
+        }
+        if shown.friction {
+            fields = fields.with_friction();
+        }
+        for node in friction::nodes(shown.tangential) {
+            for (member, at) in node.on_bodies() {
+                for &p in copies.get(&member).into_iter().flatten() {
+                    fields.add_friction(p, &at);
                 }
             }
         }

@@ -5,10 +5,11 @@
 //! of the format need not support it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and
 //! `candidate` is 1 where their values are meaningful: a threshold on `candidate` shows the interfaces alone.
 
+use super::friction_fields::{FrictionFields, PointFriction};
 use super::vtu::Vtu;
 use base::{Error, Result};
 
-/// The four arrays, and pressures where nodes have areas.
+/// The four arrays, pressures where nodes have areas, and friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactFields {
     /// Sum of the multipliers of the point's candidates; 0 elsewhere.
@@ -27,6 +28,8 @@ pub struct ContactFields {
     smoothed: Option<Vec<f64>>,
     /// Whether there are pressures, also where no candidate is.
     has_pressure: bool,
+    /// Shear stresses, slips and states; `None`: there is no friction.
+    friction: Option<FrictionFields>,
 }
 
 impl ContactFields {
@@ -41,6 +44,7 @@ impl ContactFields {
             pressure: Vec::new(),
             smoothed: None,
             has_pressure: false,
+            friction: None,
         }
     }
 
@@ -63,6 +67,20 @@ impl ContactFields {
         let to = self.smoothed.as_mut().and_then(|s| s.get_mut(point));
         if let Some(to) = to.filter(|_| force.is_finite()) {
             *to += force;
+        }
+    }
+
+    /// These fields with friction, also where no candidate has any.
+    #[must_use]
+    pub fn with_friction(mut self) -> Self {
+        self.friction = Some(FrictionFields::new(self.multiplier.len()));
+        self
+    }
+
+    /// Adds friction to a point.
+    pub fn add_friction(&mut self, point: usize, at: &PointFriction) {
+        if let Some(friction) = &mut self.friction {
+            friction.add(point, at);
         }
     }
 
@@ -115,7 +133,7 @@ impl ContactFields {
         Ok(())
     }
 
-    /// Computes the pressures, once all candidates have been added; where there is no area the pressure is 0.
+    /// Computes pressures and shear stresses, once all candidates have been added; where there is no area they are 0.
     pub fn divide(&mut self) {
         for (p, pressure) in self.pressure.iter_mut().enumerate() {
             if self.area[p] > 0.0 {
@@ -126,6 +144,9 @@ impl ContactFields {
         divided
             .filter(|(_, area)| **area > 0.0)
             .for_each(|(force, area)| *force /= area);
+        if let Some(friction) = &mut self.friction {
+            friction.divide(&self.area);
+        }
     }
 
     /// The grid with the arrays attached as point data.
@@ -138,6 +159,10 @@ impl ContactFields {
         };
         let grid = match &self.smoothed {
             Some(smoothed) => grid.point_data("contact_pressure_smoothed", 1, &smoothed[..]),
+            None => grid,
+        };
+        let grid = match &self.friction {
+            Some(friction) => friction.on(grid),
             None => grid,
         };
         grid.point_data("multiplier", 1, &self.multiplier[..])

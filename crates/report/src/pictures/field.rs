@@ -3,6 +3,7 @@
 //! Cells are painted pixel by pixel, so that a million of them cost a fraction of a second. Points may be listed once
 //! per body or once per subdomain: lines between bodies and subdomains are found from the coordinates.
 
+use super::arrows;
 use super::marks;
 use super::mesh::bounds;
 use super::obstacles::BEYOND;
@@ -10,17 +11,19 @@ use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
 use super::rigid_faces;
 use crate::drawing::canvas::{Canvas, Colour, TextStyle};
 use crate::drawing::raster::Raster;
+use crate::drawing::ticks;
 use base::Result;
 use std::path::Path;
 
-pub use super::marks::ContactMark;
+pub use super::arrows::Arrow;
+pub use super::marks::{ContactMark, Marked, Touch};
 pub use super::mesh::PlaneMesh;
 pub use super::rigid_faces::Beside;
 pub use super::values::ShownField;
 
-/// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `contact` lists the
-/// parts of sides that may touch another body or an obstacle, as they are shown; they are marked on the first field. If
-/// the bodies are `displaced`, every body has its own outline, with a thin outline of its undeformed shape.
+/// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `marked` is drawn on
+/// the first field. If the bodies are `displaced`, every body has its own outline, with a thin outline of its
+/// undeformed shape.
 ///
 /// # Errors
 /// [`base::ErrorKind::Input`] when an array does not fit the mesh; [`base::ErrorKind::Environment`] with the path.
@@ -28,7 +31,7 @@ pub fn write(
     beside: &Beside,
     mesh: &PlaneMesh,
     fields: &[ShownField],
-    contact: &[ContactMark],
+    marked: &Marked,
     displaced: bool,
     title: &str,
     path: &Path,
@@ -36,11 +39,13 @@ pub fn write(
     mesh.check()?;
     let (points, cells) = (mesh.points.len(), mesh.corners.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
-    draw(beside, mesh, fields, contact, displaced, title).write_png(path)
+    draw(beside, mesh, fields, marked, displaced, title).write_png(path)
 }
 
 const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
+/// Length of the longest arrow in logical pixels; shorter where bodies are small.
+const LONGEST: f64 = 40.0;
 /// Colour of the outlines of undeformed bodies.
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
@@ -48,7 +53,7 @@ fn draw(
     beside: &Beside,
     mesh: &PlaneMesh,
     fields: &[ShownField],
-    contact: &[ContactMark],
+    marked: &Marked,
     displaced: bool,
     title: &str,
 ) -> Raster {
@@ -85,8 +90,12 @@ fn draw(
     );
     let n = fields.len().max(1) as f64;
     let (columns, rows) = if wide { (1.0, n) } else { (n, 1.0) };
-    let below = marks::legend_height(contact);
-    let content = (columns * cell.0, rows * cell.1 + below);
+    let body_width = (w * h / mesh.count(mesh.body).max(1) as f64).sqrt();
+    let longest = f64::min(LONGEST, 0.3 * body_width);
+    let largest = arrows::largest(marked.tractions, longest);
+    let traction = largest.map(|t| format!("traction, at most {}", ticks::number(t)));
+    let (wide_legend, below) = marks::legend_size(marked.contact, traction.as_deref());
+    let content = ((columns * cell.0).max(wide_legend), rows * cell.1 + below);
     let (mut raster, width, top) = sheet(title, content);
     for (k, field) in fields.iter().enumerate() {
         let at = if wide {
@@ -127,7 +136,10 @@ fn draw(
         }
         if k == 0 {
             let spacing = spacing(mesh.count(mesh.body));
-            marks::draw(&mut raster, contact, &view, spacing);
+            marks::draw(&mut raster, marked.contact, &view, spacing);
+            if let Some(largest) = largest {
+                arrows::draw(&mut raster, marked.tractions, &view, longest / largest);
+            }
         }
         axes(&mut raster, &view, low, high);
         colour_bar(
@@ -139,7 +151,12 @@ fn draw(
         );
     }
     let middle = top + rows * cell.1 + 0.5 * below - 4.0;
-    marks::legend(&mut raster, contact, (0.5 * width, middle));
+    marks::legend(
+        &mut raster,
+        marked.contact,
+        traction.as_deref(),
+        (0.5 * width, middle),
+    );
     raster
 }
 

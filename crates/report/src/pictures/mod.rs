@@ -1,6 +1,7 @@
 //! Pictures of fields on meshes: plane bodies from above, solids from a corner, faces of contact.
 
 mod apart;
+mod arrows;
 pub mod contact_map;
 pub mod field;
 mod marks;

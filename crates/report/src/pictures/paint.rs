@@ -13,6 +13,8 @@ const TICK_TEXT: f64 = 11.5;
 pub(super) const BAR: f64 = 14.0;
 
 pub(super) const TEXT: f64 = 13.0;
+/// Between the entries of a legend.
+const ENTRY_GAP: f64 = 26.0;
 const TITLE_TEXT: f64 = 15.0;
 /// Width for the numbers at a colour bar.
 pub(super) const LABELS: f64 = 74.0;
@@ -39,16 +41,23 @@ pub(super) fn legend<T>(
     middle: CanvasPoint,
     draw: impl Fn(&mut Raster, CanvasPoint, &T),
 ) {
-    const GAP: f64 = 26.0;
-    let width = |label: &str| sample + 8.0 + canvas::text_width(label, TEXT, false);
-    let total: f64 = entries.iter().map(|e| width(e.1)).sum();
-    let mut x = middle.0 - 0.5 * (total + GAP * entries.len().saturating_sub(1) as f64);
+    let mut x = middle.0 - 0.5 * legend_width(entries, sample);
     for (what, label) in entries {
         draw(raster, (x, middle.1), what);
         let style = TextStyle::new(TEXT, Anchor::Start);
         raster.text((x + sample + 8.0, middle.1), label, &style);
-        x += width(label) + GAP;
+        x += entry_width(label, sample) + ENTRY_GAP;
     }
+}
+
+/// Width of the samples with their labels.
+pub(super) fn legend_width<T>(entries: &[(T, &str)], sample: f64) -> f64 {
+    let total: f64 = entries.iter().map(|e| entry_width(e.1, sample)).sum();
+    total + ENTRY_GAP * entries.len().saturating_sub(1) as f64
+}
+
+fn entry_width(label: &str, sample: f64) -> f64 {
+    sample + 8.0 + canvas::text_width(label, TEXT, false)
 }
 
 /// The position of the mesh in the picture.

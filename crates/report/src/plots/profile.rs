@@ -166,6 +166,12 @@ impl InterfaceProfile {
             .copied()
             .filter(|v| v.is_finite())
             .fold(most, f64::max);
+        // Bounds far above all stresses, as those that make sides stick, are cut off.
+        let bounds = self.nodes.friction.iter().map(|f| f.bound);
+        let bounds: Vec<f64> = bounds
+            .map(|b| if b > 2.0 * most { f64::NAN } else { b })
+            .collect();
+        let most = bounds.iter().copied().fold(most, f64::max);
         let (least, most) = (least.min(0.0), most.max(0.0));
         let shown = if most > least {
             let air = 0.06 * (most - least);
@@ -186,6 +192,12 @@ impl InterfaceProfile {
         };
         let mut forces = vec![curve(what, force, Colour::CYCLE[0])];
         if !shear.is_empty() {
+            let bound = curve("bound of the shear stress", &bounds, Colour::CYCLE[3]);
+            forces.push(
+                bound
+                    .marker(Marker::None, false, 0.0)
+                    .line(LineStyle::Dashed),
+            );
             forces.push(curve("shear stress", &shear, Colour::CYCLE[2]));
         }
         let gap = curve("gap", &self.nodes.gap, Colour::CYCLE[1]);

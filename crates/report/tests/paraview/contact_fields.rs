@@ -1,6 +1,7 @@
 //! Unit tests of `crates/report/src/paraview/contact_fields.rs`.
 
 use super::*;
+use crate::paraview::friction_fields::ContactState;
 
 #[test]
 fn candidates_of_one_point_are_joined() {
@@ -26,6 +27,44 @@ fn pressure_is_force_over_area() {
     fields.divide();
     assert_eq!(fields.pressure, [2.0, 0.0, 0.0]);
     assert!(fields.add_area(3, 1.0).is_err() && fields.add_area(0, -1.0).is_err());
+}
+
+#[test]
+fn friction_is_stress_slip_and_state() {
+    let mut fields = ContactFields::new(4).with_areas().with_friction();
+    let at = |force: f64, slip: f64, state| PointFriction {
+        force: [force, 0.0, -force],
+        slip: [0.0, slip, 0.0],
+        state,
+    };
+    let nodes = [
+        (0, 0.5, at(3.0, 0.1, ContactState::Slip)),
+        (0, 1.5, at(1.0, -0.2, ContactState::Stick)),
+        (1, 0.0, at(4.0, 0.0, ContactState::Stick)),
+        (2, 1.0, at(0.0, 0.3, ContactState::Open)),
+    ];
+    for (point, area, at) in nodes {
+        fields.add(point, 1.0, 0.0, true).unwrap();
+        fields.add_area(point, area).unwrap();
+        fields.add_friction(point, &at);
+    }
+    fields.divide();
+    let points = vec![[0.0; 3]; 4];
+    let cells = mesh::Cells::default();
+    let path = crate::scratch::Scratch::new("friction-fields");
+    let file = path.0.join("a.vtu");
+    fields.on(Vtu::new(&points, &cells)).write(&file).unwrap();
+    let text = std::fs::read_to_string(&file).unwrap();
+    for name in ["shear", "slip", "contact_state"] {
+        assert!(text.contains(&format!("Name=\"{name}\"")), "{name}");
+    }
+    let friction = fields.friction.unwrap();
+    assert_eq!(friction.shear[..6], [2.0, 0.0, -2.0, 0.0, 0.0, 0.0]);
+    assert_eq!(
+        friction.slip,
+        [0.0, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]
+    );
+    assert_eq!(friction.state, [2, 1, 0, 0]);
 }
 
 #[test]

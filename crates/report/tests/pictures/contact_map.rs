@@ -1,6 +1,8 @@
 //! Unit tests of `crates/report/src/pictures/contact_map.rs`.
 
 use super::*;
+use crate::drawing::canvas::Colour;
+use crate::interfaces::NodeFriction;
 use crate::scratch::Scratch;
 
 /// An interface of n × n elements on the unit square with pressure max(1 − 4 r², 0) around its middle.
@@ -54,8 +56,8 @@ fn pressure_is_force_over_area() {
 fn outlines_run_around_the_zone_and_the_face() {
     let map = sample("a|b", 8, 1.0);
     let outline = map.outlines();
-    let length = |closed: bool| -> f64 {
-        let these = outline.iter().filter(|m| m.closed == closed);
+    let length = |touch: Touch| -> f64 {
+        let these = outline.iter().filter(|m| m.touch == touch);
         these
             .map(|m| (m.to[0] - m.from[0]).hypot(m.to[1] - m.from[1]))
             .sum()
@@ -63,11 +65,71 @@ fn outlines_run_around_the_zone_and_the_face() {
     // Nodes with r² < 1/8 around the middle: a cross of 4 × 4 cells without its corners, whose outline is as long
     // as the square's.
     assert!(
-        (length(true) - 16.0 / 8.0).abs() < 1e-12,
+        (length(Touch::Closed) - 16.0 / 8.0).abs() < 1e-12,
         "{}",
-        length(true)
+        length(Touch::Closed)
     );
-    assert!((length(false) - 4.0).abs() < 1e-12);
+    assert!((length(Touch::Open) - 4.0).abs() < 1e-12);
+}
+
+#[test]
+fn sticking_and_slipping_faces_have_outlines_of_their_own() {
+    // The left half of the nodes sticks, the right half slips; all touch. The first body is drawn to x + z.
+    let mut map = sample("a|b", 4, 1.0);
+    map.nodes.active.fill(true);
+    let node = |p: &[f64; 2]| NodeFriction {
+        state: if p[0] < 0.6 { "stick" } else { "slip" },
+        shear: [3.0, 0.0, 4.0],
+        bound: 5.0,
+        slip: [0.0; 3],
+    };
+    map.nodes.friction = map.at.iter().map(node).collect();
+    let outline = map.outlines();
+    let length = |touch: Touch| -> f64 {
+        let these = outline.iter().filter(|m| m.touch == touch);
+        these
+            .map(|m| (m.to[0] - m.from[0]).hypot(m.to[1] - m.from[1]))
+            .sum()
+    };
+    // Each half has the outline 3; the line between them is drawn once.
+    assert_eq!([Touch::Sticks, Touch::Slips].map(length), [3.0, 2.0]);
+    assert_eq!([Touch::Closed, Touch::Open].map(length), [0.0, 0.0]);
+    let near = |found: &[Arrow], wanted: [f64; 2]| {
+        assert_eq!(found.len(), 25);
+        for arrow in found {
+            let off = [0, 1].map(|c| (arrow.stress[c] - wanted[c]).abs());
+            assert!(off[0].max(off[1]) < 1e-12, "{arrow:?}");
+        }
+    };
+    near(&map.shear(), [3.0, 4.0]);
+    // In a map with exchanged coordinates the arrows turn with them, and where the map is smaller they keep their
+    // lengths.
+    map.at
+        .iter_mut()
+        .for_each(|p| *p = [0.1 * p[1], 0.1 * p[0]]);
+    near(&map.shear(), [4.0, 3.0]);
+    // Nodes that are apart have no arrow.
+    map.nodes.active.fill(false);
+    assert!(map.shear().is_empty());
+}
+
+#[test]
+fn the_legend_fits_into_the_picture() {
+    let mut map = sample("a|b", 4, 1.0);
+    let state = |k: usize| ["stick", "slip", "open"][k / 10];
+    let node = |k: usize| NodeFriction {
+        state: state(k),
+        shear: [1.0 / 3.0, 0.0, 0.0],
+        bound: 1.0,
+        slip: [0.0; 3],
+    };
+    map.nodes.friction = (0..25).map(node).collect();
+    map.nodes.active = (0..25).map(|k| state(k) != "open").collect();
+    let picture = draw(&[map], "");
+    let (w, h) = picture.size();
+    let white = |x: usize| (h - 48..h).all(|y| picture.get(x, y) == Colour::WHITE);
+    assert!((0..6).chain(w - 6..w).all(white));
+    assert!((0..w).any(|x| !white(x)));
 }
 
 #[test]

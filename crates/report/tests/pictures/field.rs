@@ -14,7 +14,7 @@ fn colours_stand_for_values() {
         &Beside::default(),
         &mesh.view(),
         &[ShownField::nodal("u", &u)],
-        &[],
+        &Marked::default(),
         false,
         "",
     );
@@ -50,11 +50,25 @@ fn the_contact_zone_is_marked_on_u() {
         .map(|k| ContactMark {
             from: [0.5, f64::from(k) / 16.0],
             to: [0.5, f64::from(k + 1) / 16.0],
-            closed: k < 8,
+            touch: if k < 8 { Touch::Closed } else { Touch::Open },
         })
         .collect();
-    let plain = draw(&Beside::default(), &mesh.view(), &field, &[], false, "");
-    let marked = draw(&Beside::default(), &mesh.view(), &field, &marks, false, "");
+    let plain = draw(
+        &Beside::default(),
+        &mesh.view(),
+        &field,
+        &Marked::default(),
+        false,
+        "",
+    );
+    let marked = draw(
+        &Beside::default(),
+        &mesh.view(),
+        &field,
+        &with(&marks),
+        false,
+        "",
+    );
     let (w, h) = plain.size();
     assert_eq!(marked.size().0, w);
     assert!(marked.size().1 > h, "room for the legend");
@@ -77,6 +91,14 @@ fn the_contact_zone_is_marked_on_u() {
     assert!((30..80).contains(&changes), "{changes}");
 }
 
+/// These marks without tractions.
+fn with(contact: &[ContactMark]) -> Marked<'_> {
+    Marked {
+        contact,
+        tractions: &[],
+    }
+}
+
 /// u and ρ.
 fn both<'a>(u: &'a [f64], rho: &'a [f64]) -> [ShownField<'a>; 2] {
     let rho = ShownField::coefficient("coefficient ρ", rho);
@@ -94,7 +116,7 @@ fn arrays_of_the_wrong_length_are_refused() {
         &Beside::default(),
         &mesh.view(),
         &both(&u, &rho),
-        &[],
+        &Marked::default(),
         false,
         "",
         Path::new("/dev/null"),
@@ -117,7 +139,7 @@ fn a_million_cells_are_painted() {
         &Beside::default(),
         &mesh.view(),
         &both(&u, &rho),
-        &[],
+        &Marked::default(),
         false,
         "",
         &dir.0.join("u.png"),
@@ -144,7 +166,7 @@ fn obstacles_stand_beside_bodies() {
         },
         &mesh.view(),
         &[ShownField::nodal("u", &u)],
-        &[],
+        &Marked::default(),
         true,
         "",
     );
@@ -175,7 +197,7 @@ fn rigid_surfaces_stand_beside_bodies() {
         &beside,
         &mesh.view(),
         &[ShownField::nodal("u", &u)],
-        &[],
+        &Marked::default(),
         true,
         "",
     );
@@ -190,4 +212,58 @@ fn rigid_surfaces_stand_beside_bodies() {
     for white in [at(0.5, -0.04), at(0.9, -0.01), at(0.5, 1.04)] {
         assert_eq!(white, Colour::WHITE);
     }
+}
+
+#[test]
+fn zones_and_tractions_of_friction_are_drawn() {
+    // Two bodies that touch along y = 1/2; they slip on the left half and stick on the right one.
+    let mesh = grid(2, 2, 4, false);
+    let u = vec![0.5; mesh.points.len()];
+    let field = [ShownField::nodal("u", &u); 2];
+    let marks: Vec<ContactMark> = (0..16)
+        .map(|k| ContactMark {
+            from: [f64::from(k) / 16.0, 0.5],
+            to: [f64::from(k + 1) / 16.0, 0.5],
+            touch: if k < 8 { Touch::Slips } else { Touch::Sticks },
+        })
+        .collect();
+    let tractions: Vec<Arrow> = (0..=16)
+        .map(|k| Arrow {
+            at: [f64::from(k) / 16.0, 0.5],
+            stress: [0.0, 3.0],
+        })
+        .collect();
+    let shown = |tractions: &[Arrow]| {
+        let marked = Marked {
+            tractions,
+            ..with(&marks)
+        };
+        draw(&Beside::default(), &mesh.view(), &field, &marked, false, "")
+    };
+    let (plain, arrows) = (shown(&[]), shown(&tractions));
+    let pixel = |x: f64, y: f64| {
+        let (x, y) = (LEFT + 400.0 * x, 6.0 + 2.4 * TEXT + 400.0 - 400.0 * y);
+        ((2.0 * x) as usize, (2.0 * y) as usize)
+    };
+    let at = |picture: &Raster, x: f64, y: f64| {
+        let (x, y) = pixel(x, y);
+        picture.get(x, y)
+    };
+    let (slips, sticks) = (at(&plain, 0.22, 0.5), at(&plain, 0.78, 0.5));
+    assert!(slips.0 > 200 && slips.2 < 60, "orange, found {slips:?}");
+    assert!(sticks.2 > 200 && sticks.0 < 60, "blue, found {sticks:?}");
+    // A stress upwards is drawn above the line, black on both halves, and not below it nor on the second field.
+    for x in [0.25, 0.75] {
+        assert_eq!(at(&arrows, x, 0.54), Colour(0, 0, 0));
+        assert_eq!(at(&arrows, x, 0.46), at(&plain, x, 0.46));
+    }
+    let (w, h) = plain.size();
+    let above_legend = h - 60;
+    let changed = |xs: std::ops::Range<usize>| {
+        xs.flat_map(|x| (0..above_legend).map(move |y| (x, y)))
+            .filter(|&(x, y)| plain.get(x, y) != arrows.get(x, y))
+            .count()
+    };
+    assert!(changed(0..w / 2) > 100);
+    assert_eq!(changed(w / 2 + 40..w), 0);
 }

@@ -57,6 +57,7 @@ fn stick_and_slip_are_zones_of_their_own() {
         .map(|state| NodeFriction {
             state,
             shear: [3.0, -4.0, 0.0],
+            bound: 6.0,
             slip: [0.0; 3],
         })
         .to_vec();
@@ -74,7 +75,15 @@ fn stick_and_slip_are_zones_of_their_own() {
     );
     assert_eq!(p.shear(), [5.0; 5]);
     let [forces, gaps] = p.panels(0.0);
-    assert_eq!((forces.series.len(), gaps.series.len()), (3, 2));
+    assert_eq!((forces.series.len(), gaps.series.len()), (4, 2));
+    let bound =
+        |panel: &Panel| -> Vec<f64> { panel.series[2].points.iter().map(|p| p.1).collect() };
+    assert_eq!(bound(&forces), [6.0; 5]);
+    // A bound far above the stresses does not make them small.
+    p.nodes.friction.iter_mut().for_each(|f| f.bound = 1e6);
+    let [far, _] = p.panels(0.0);
+    assert!(bound(&far).iter().all(|b| b.is_nan()));
+    assert!(far.y.range.unwrap().1 < 10.0);
 }
 
 #[test]
