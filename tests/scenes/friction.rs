@@ -217,8 +217,8 @@ fn entries_with_different_laws_at_one_node_are_named() {
                   plane = { point = [0, 0], normal = [0, 1] }\n";
     refused(
         &format!("{}{second}", block("friction = 0.1")),
-        "s.toml:14: the obstacle of s.toml, line 9 and the obstacle of s.toml, line 14 both select the node at (1, 0) \
-         of body `block` and have different laws (friction, stiffness), expected one law at a node",
+        "s.toml:14: the obstacle of s.toml:9 and the obstacle of s.toml:14 both select the node at (1, 0) of body \
+         `block` and have different laws (friction, stiffness), expected one law at a node",
     );
     let text = format!("{}{second}friction = 0.1", block("friction = 0.1"));
     Scene::parse("s.toml", &text).expect("one law");
