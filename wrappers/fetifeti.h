@@ -894,9 +894,6 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, Petsc
    All is the same on all ranks, and takes the place of the law that the mortar had. Bounds and stiffnesses are per
    area: each node has its part by the area of its function.
 
-   Friction is solved in the plane, in space only where the nodes of both surfaces lie opposite each other:
-   FetiFetiSolve() refuses rows that share nodes there.
-
 .seealso: `FetiFetiAddMortar()`, `FetiFetiGetMortarFriction()`, `FetiFetiNextContactStep()`, `FetiFetiSetContactLaw()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetMortarLaw(FetiFeti ff, PetscInt mortar, PetscReal friction, PetscReal limit,
