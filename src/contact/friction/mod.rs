@@ -46,6 +46,8 @@ pub struct Friction<'a> {
     nodes: Vec<Node>,
     mixing: Mixing,
     progress: ActiveSetProgress,
+    /// The factor on the tolerance of the user.
+    accuracy: f64,
     /// Springs across slips in space, and rows along them.
     springs: CompliantRows<'a>,
     turned: TurnedRows<'a>,
@@ -64,6 +66,7 @@ impl<'a> Friction<'a> {
         let state = start.unwrap_or(&cold);
         let nodes = nodes(method, &state.lambda, &state.active)?;
         let inner = ActiveSet::new(method, settings, start)?;
+        let accuracy = inner.state.accuracy;
         let loads = Loads::new(&method.problem, &method.dual());
         Ok(Friction {
             method,
@@ -73,6 +76,7 @@ impl<'a> Friction<'a> {
             nodes,
             mixing: Mixing::default(),
             progress: ActiveSetProgress::default(),
+            accuracy,
             springs: CompliantRows::of(method),
             turned: TurnedRows::of(method),
             slides: 0,
@@ -242,7 +246,11 @@ impl Strategy<DualCourse> for Friction<'_> {
             } else {
                 tuning.renewed
             };
+            // States ask for more digits than the user.
+            let digits = if self.inner.tight { 1.0 } else { tuning.digits };
+            self.inner.state.accuracy = digits * self.accuracy;
             let (mut step, status, change) = self.inner.try_set()?;
+            self.inner.state.accuracy = self.accuracy;
             if let Some(before) = whole {
                 step = step.continuing(&before);
                 self.inner.state.steps -= 1;

@@ -10,6 +10,8 @@ pub struct FrictionTuning {
     /// A hundred times more: iterations are a quarter fewer in most scenes, but a roller bearing with friction takes 48
     /// steps in place of 9, and a box of spheres more than 200 in place of 86.
     pub finer: f64,
+    /// Factor on the tolerance of the user in a step while states change.
+    pub digits: f64,
     /// The factor where states stay and forces of friction are renewed: the forces are a small change.
     pub renewed: f64,
     /// Renewals of the forces in a step at most.
@@ -41,6 +43,7 @@ impl FrictionTuning {
     /// The constants as they are used.
     pub const DEFAULT: FrictionTuning = FrictionTuning {
         finer: 1e-4,
+        digits: 1e-2,
         renewed: 0.1,
         renewals: 10,
         patience: 3,
