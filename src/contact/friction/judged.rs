@@ -26,14 +26,15 @@ fn places(jump: &Jump) -> Vec<usize> {
     place
 }
 
-/// The largest distance of a solution from the law of friction, as a force. Collective.
-pub fn error(method: &LinearMethod, solution: &LinearSolution) -> Result<f64> {
+/// The largest distance of a solution from the law of friction, as a force; slips say nothing up to the length
+/// `nothing`. Collective.
+pub fn error(method: &LinearMethod, solution: &LinearSolution, nothing: f64) -> Result<f64> {
     let held = &method.dual().stiffness.jump.active.clone();
     let step = node::Step {
         lambda: &solution.lambda,
         gaps: &solution.gaps,
         active: held,
-        nothing: 0.0,
+        nothing,
     };
     let nodes = nodes(method, &solution.lambda, held)?;
     let mut largest = [nodes.iter().fold(0.0, |a: f64, n| a.max(n.error(&step)))];

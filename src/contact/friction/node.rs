@@ -291,7 +291,11 @@ impl Node {
     pub fn error(&self, step: &Step<'_>) -> f64 {
         let [force, slip] = self.tangent(step);
         let g = self.bound.at(step.lambda[self.normal]);
-        let s = [0, 1].map(|k| force[k] + self.stiffness * slip[k]);
+        let told = match length(slip) {
+            size if size > step.nothing => 1.0 - step.nothing / size,
+            _ => 0.0,
+        };
+        let s = [0, 1].map(|k| force[k] + told * self.stiffness * slip[k]);
         let factor = match length(s) {
             size if size > g => g / size,
             _ => 1.0,

@@ -51,7 +51,7 @@ impl FrictionTuning {
         mixed: 4,
         still: 5.0,
         nothing: 10.0,
-        even: 0.1,
+        even: 3.0,
         follows: 1e-8,
         across: 0.3,
         slides: 8,
