@@ -11,11 +11,12 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
 
-/// Springs across slips are at most this many times softer than nodes.
-const SOFT: f64 = 100.0;
+/// Springs across slips are at most this many times softer than nodes: of a node with rows of its own, and of one that
+/// shares its rows with others. There M⁻¹ has rows that depend on each other, and soft springs make it a bad one.
+const SOFT: [f64; 2] = [100.0, 2.0];
 
 /// Springs that are stiffer than nodes by this factor are rigid.
-const RIGID: f64 = 1e-4;
+const RIGID: f64 = 1e-2;
 
 /// The state of a node in the equations of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +39,8 @@ pub struct Node {
     bound: FrictionBound,
     /// k, a force per length of the size of the diagonal of K.
     stiffness: f64,
+    /// How much softer than the node a spring across its slip may be.
+    soft: f64,
     /// Its state in the equations.
     pub state: NodeState,
     /// g in the equations.
@@ -96,6 +99,7 @@ impl Node {
             tangential,
             bound: given.bound,
             stiffness: if soft > 0.0 { 1.0 / soft } else { 0.0 },
+            soft: SOFT[usize::from(jump.rows_beside(place(given.normal)) > 3)],
             state,
             g: size,
             axis: [1.0, 0.0],
@@ -139,7 +143,9 @@ impl Node {
     /// Whether the row across the slip is to hold. A spring much softer than the node costs iterations, and is not
     /// needed: its force is small, and follows the slip from step to step.
     fn is_stiff_across(&self) -> bool {
-        self.tangential.len() == 2 && self.g > 0.0 && self.stiffness * self.slipped <= SOFT * self.g
+        self.tangential.len() == 2
+            && self.g > 0.0
+            && self.stiffness * self.slipped <= self.soft * self.g
     }
 
     /// The row across the slip; `None` in the plane, and if it does not slip.

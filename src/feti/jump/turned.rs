@@ -9,6 +9,12 @@ use super::turn::Turn;
 use parallel::exchange::exchange;
 
 impl Jump {
+    /// Number of rows in the block of an owned row of B_gl.
+    pub fn rows_beside(&self, row: usize) -> usize {
+        let block = self.block_of[row - self.n_owned_local];
+        self.blocks[block as usize].rows.len()
+    }
+
     /// Turns rows of this rank, with their right-hand sides and B_D. Collective.
     pub fn turn(&mut self, comm: &SimpleCommunicator, turns: &[Turn]) {
         let mut outgoing: Vec<Vec<JumpBlockEntry>> = (0..comm.size()).map(|_| Vec::new()).collect();

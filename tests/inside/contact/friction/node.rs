@@ -12,6 +12,7 @@ fn node(state: NodeState, g: f64) -> Node {
             limit: 3.0,
         },
         stiffness: 2.0,
+        soft: SOFT[0],
         state,
         g,
         axis: [1.0, 0.0],
