@@ -67,8 +67,8 @@ impl<'a> Friction<'a> {
         let nodes = nodes(method, &state.lambda, &state.active)?;
         let mut inner = ActiveSet::new(method, settings, start)?;
         let accuracy = inner.state.accuracy;
-        // Where sides stood at the end of a load step is known to its tolerance. What sticks there may seem to violate a
-        // row that holds it, too.
+        // Where sides stood at the end of a load step is known to its tolerance. What sticks there may seem to violate
+        // a row that holds it, too.
         if any(method.session.comm(), !state.slid.is_empty()) {
             let even = settings.tuning.friction.even * method.ksp.tolerances()?.0;
             inner.open = inner.open.max(even);
