@@ -179,6 +179,12 @@ impl<'a> Friction<'a> {
         }
     }
 
+    /// Whether the step has numbers for all rows: equations without digits may have none. Collective.
+    fn is_finite(&self) -> bool {
+        let mut numbers = self.inner.state.lambda.iter().chain(&self.inner.gaps);
+        !any(self.method.session.comm(), numbers.any(|v| !v.is_finite()))
+    }
+
     /// The largest force of a row; 1 if there is none. Collective.
     fn largest_force(&self) -> f64 {
         let lambda = self.inner.state.lambda.iter();
@@ -263,6 +269,9 @@ impl Strategy<DualCourse> for Friction<'_> {
             }
             if !status.converged() {
                 return Ok((step, Proposal::End(status)));
+            }
+            if !self.is_finite() {
+                return Ok((step, Proposal::End(Status::Certificate)));
             }
             let state = &mut self.inner.state;
             state.safeguarded = false;

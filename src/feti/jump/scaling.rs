@@ -75,10 +75,8 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
         return out;
     }
     let held = faer::Mat::from_fn(rows.len(), n, |i, j| b.get(rows[i], j));
-    let svd = held
-        .svd()
-        .expect("an SVD of a tiny finite matrix converges");
-    let sigma = svd.S().column_vector();
+    let [u, v, sigma] = svd(&held);
+    let sigma = sigma.col(0);
     let rank = (0..sigma.nrows())
         .filter(|&i| sigma[i] > RANK * sigma[0])
         .count();
@@ -87,13 +85,13 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     for l in 0..rank {
         for j in 0..rows.len() {
             for i in 0..n {
-                pinv[(i, j)] += svd.V()[(i, l)] * svd.U()[(j, l)] / sigma[l];
+                pinv[(i, j)] += v[(i, l)] * u[(j, l)] / sigma[l];
             }
         }
     }
     let projected = match connected_parts(&held, rank) {
         Some(part) => minus_average(&part, weights, &pinv),
-        None => remove_kernel(&svd.V().subcols(rank, n - rank).to_owned(), weights, pinv),
+        None => remove_kernel(&v.subcols(rank, n - rank).to_owned(), weights, pinv),
     };
     for (i, &r) in rows.iter().enumerate() {
         for j in 0..n {
@@ -101,6 +99,22 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
         }
     }
     out
+}
+
+/// U, V and Σ, as a column, of a matrix of a few rows. The iteration does not always come to its end where rows are
+/// nearly parallel; then the rows are taken in another order.
+fn svd(b: &faer::Mat<f64>) -> [faer::Mat<f64>; 3] {
+    let n = b.nrows();
+    let attempt = |first: usize| {
+        let moved = faer::Mat::from_fn(n, b.ncols(), |i, j| b[((i + first) % n, j)]);
+        let svd = moved.svd().ok()?;
+        let u = svd.U();
+        let back = faer::Mat::from_fn(n, u.ncols(), |i, l| u[((i + n - first) % n, l)]);
+        let sigma = svd.S().column_vector().as_mat().to_owned();
+        Some([back, svd.V().to_owned(), sigma])
+    };
+    let found = (0..n).find_map(attempt);
+    found.expect("an SVD of a few rows converges in some order")
 }
 
 /// B_D of a single row: D⁻¹bᵀ / (b D⁻¹ bᵀ), zero for a row of zeros. Nothing cancels in it.
@@ -119,10 +133,10 @@ fn single(b: &Dense, r: usize, weights: &[f64]) -> Vec<f64> {
 
 /// An orthonormal basis of range B for a matrix of a few rows.
 pub fn range(b: &faer::Mat<f64>) -> faer::Mat<f64> {
-    let svd = b.svd().expect("an SVD of a tiny finite matrix converges");
-    let sigma = svd.S().column_vector();
+    let [u, _, sigma] = svd(b);
+    let sigma = sigma.col(0);
     let rank = (0..sigma.nrows()).filter(|&i| sigma[i] > RANK * sigma[0]);
-    svd.U().subcols(0, rank.count()).to_owned()
+    u.subcols(0, rank.count()).to_owned()
 }
 
 /// The connected component of each column if the rows only take differences within components. Indicators of the

@@ -135,3 +135,32 @@ fn values_of_heavy_copies_keep_their_digits() {
         }
     }
 }
+
+/// Rows at an edge of four bodies, two of them turned to be parallel but for 2e-10: the SVD of faer does not come to its
+/// end in this order.
+#[test]
+fn rows_that_are_nearly_parallel_have_a_scaling() {
+    let (c, s, t) = (
+        0.9997041277018103,
+        0.024324001643669556,
+        0.024324001833189147,
+    );
+    let rows = [
+        [0.0, 1.0, 0.0, 0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [0.9999999999999987, 0.0, 0.0, -0.9999999999999987, 0.0, 0.0],
+        [c, s, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.99970412769719, t, 0.0],
+    ];
+    let b = Dense::from_fn(6, 6, |i, j| rows[i][j]);
+    let bd = block(&b, &[1.0; 6], &[true; 6]);
+    // B B_Dᵀ B = B.
+    for i in 0..6 {
+        for j in 0..6 {
+            let through = |k: usize| -> f64 { (0..6).map(|l| b.get(i, l) * bd.get(k, l)).sum() };
+            let product: f64 = (0..6).map(|k| through(k) * b.get(k, j)).sum();
+            assert!((product - b.get(i, j)).abs() < 1e-8, "{i} {j}: {product}");
+        }
+    }
+}
