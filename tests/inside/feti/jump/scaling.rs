@@ -136,8 +136,8 @@ fn values_of_heavy_copies_keep_their_digits() {
     }
 }
 
-/// Rows at an edge of four bodies, two of them turned to be parallel but for 2e-10: the SVD of faer does not come to its
-/// end in this order.
+/// Rows at an edge of four bodies, two of them turned to be parallel but for 2e-10: the SVD of faer does not come to
+/// its end in this order.
 #[test]
 fn rows_that_are_nearly_parallel_have_a_scaling() {
     let (c, s, t) = (
