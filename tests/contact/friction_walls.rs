@@ -268,7 +268,7 @@ fn judge(ids: impl Iterator<Item = u64>) {
              and iterations over those without friction, median, 9 of 10, most: {quantiles:.2?}"
         );
         // Where four bodies meet in space, states may wander: that is said, and no answer is wrong.
-        assert!(10 * failures.len() <= 3 * n && right > n / 2);
+        assert!(20 * failures.len() <= 3 * n && right > n / 2);
     });
 }
 
