@@ -57,7 +57,7 @@ pub fn signs(method: &LinearMethod, tuning: &Tuning, solution: &LinearSolution) 
             active[r] = true;
         }
     }
-    let slides = friction::error(method, solution, open)? > pull;
+    let slides = friction::error(method, &tuning.friction, solution, open)? > pull;
     if any(dual.comm(), active != jump.active) || slides {
         jump.release(&active, &mut lambda);
         return Ok(Signs::Wrong(State::warm(lambda, &active)));

@@ -458,3 +458,35 @@ fn sides_in_space_that_do_not_match_have_friction() {
     let text = error.expect_err("it slides").to_string();
     assert!(text.contains("\"high\" is pushed away for ever"), "{text}");
 }
+
+/// A hub that is shrunk onto a shaft and pulled along it: friction has the force of the pull on its ring, and holds up
+/// to μ times that of the fit.
+#[test]
+fn a_hub_holds_on_its_shaft_up_to_the_force_of_its_fit() {
+    let hub = |pull: f64| {
+        solved(format!(
+            "physics = \"elasticity\"\nplane = \"axisymmetric\"\norder = 2\n[[body]]\nname = \"shaft\"\nsize = [1, 4]\n\
+             elements = [4, 16]\nyoung = 1e4\npoisson = 0\ndirichlet = {{ bottom = {{ y = 0 }}, left = {{ x = 0 }} }}\n\
+             [[body]]\nname = \"hub\"\norigin = [1, 1]\nsize = [1, 2]\nelements = [4, 8]\nyoung = 1e4\npoisson = 0\n\
+             traction = {{ top = [0, {pull}] }}\n[[contact]]\nbodies = [\"shaft\", \"hub\"]\ngap = -0.002\n\
+             friction = 0.3\n"
+        ))
+    };
+    let held = hub(2.7).expect("it holds");
+    assert!(held.converged(), "{}", held.status);
+    let force = std::f64::consts::PI * 3.0 * 2.7;
+    let rows = held.tangential_rows();
+    let drag: f64 = rows.iter().map(|r| r.multiplier * r.normal()[1]).sum();
+    near(drag.abs(), force, 1e-6 * force, "friction");
+    let fit: f64 = held.rows().iter().map(|r| r.multiplier).sum();
+    assert!(force < 0.3 * fit && 0.3 * fit < force * 4.0 / 2.7, "{fit}");
+    assert!(rows.iter().any(|r| r.state == RowState::Slips));
+    let text = hub(4.0)
+        .map(|s| s.status)
+        .expect_err("it slides")
+        .to_string();
+    assert!(
+        text.contains("\"hub\" is pushed away for ever where it slides along y"),
+        "{text}"
+    );
+}

@@ -1,18 +1,25 @@
 //! A solution beside the law of friction.
 
 use super::node::{self, Node};
+use super::tuning::FrictionTuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::Result;
 use parallel::exchange::max_all;
 
 /// The nodes of this rank in the states that multipliers and a set say. Collective.
-pub(super) fn nodes(method: &LinearMethod, lambda: &[f64], active: &[bool]) -> Result<Vec<Node>> {
+pub(super) fn nodes(
+    method: &LinearMethod,
+    tuning: &FrictionTuning,
+    lambda: &[f64],
+    active: &[bool],
+) -> Result<Vec<Node>> {
     let dual = method.dual();
     let jump = &dual.stiffness.jump;
     let compliance = dual.stiffness.compliance_of_rows(&method.problem)?;
     let place = places(jump);
-    let node = |given| Node::new(jump, given, |r| place[r], (lambda, active), &compliance);
+    let at = (lambda, active);
+    let node = |given| Node::new(jump, given, |r| place[r], at, &compliance, tuning);
     Ok(method.problem.friction.iter().map(node).collect())
 }
 
@@ -28,7 +35,12 @@ fn places(jump: &Jump) -> Vec<usize> {
 
 /// The largest distance of a solution from the law of friction, as a force; slips say nothing up to the length
 /// `nothing`. Collective.
-pub fn error(method: &LinearMethod, solution: &LinearSolution, nothing: f64) -> Result<f64> {
+pub fn error(
+    method: &LinearMethod,
+    tuning: &FrictionTuning,
+    solution: &LinearSolution,
+    nothing: f64,
+) -> Result<f64> {
     let held = &method.dual().stiffness.jump.active.clone();
     let step = node::Step {
         lambda: &solution.lambda,
@@ -36,7 +48,7 @@ pub fn error(method: &LinearMethod, solution: &LinearSolution, nothing: f64) -> 
         active: held,
         nothing,
     };
-    let nodes = nodes(method, &solution.lambda, held)?;
+    let nodes = nodes(method, tuning, &solution.lambda, held)?;
     let mut largest = [nodes.iter().fold(0.0, |a: f64, n| a.max(n.error(&step)))];
     max_all(method.session.comm(), &mut largest);
     Ok(largest[0])

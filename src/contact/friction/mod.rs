@@ -2,11 +2,11 @@
 //!
 //! ```text
 //!     stick    B_t u = c_t                        slip    f ← f − B_tᵀ g d
-//!     g ← μ λ_n,    d ← s/|s|,    s = λ_t + k w    after every step
+//!     g ← μ λ_n    after every solve              d ← s/|s|,    s = λ_t + k w    where states change
 //! ```
 //!
-//! A step solves the equations of these states by the linear method: nothing is factored again, and the operators stay
-//! symmetric. Normal rows follow the rule of the active set in the same step.
+//! A step solves the equations of one set of states by the linear method, until the forces are at rest: nothing is
+//! factored again, and the operators stay symmetric. Normal rows follow the rule of the active set in the same step.
 
 mod judged;
 mod mixing;
@@ -64,7 +64,12 @@ impl<'a> Friction<'a> {
     ) -> Result<Friction<'a>> {
         let cold = State::cold(&method.dual().stiffness.jump);
         let state = start.unwrap_or(&cold);
-        let nodes = nodes(method, &state.lambda, &state.active)?;
+        let nodes = nodes(
+            method,
+            &settings.tuning.friction,
+            &state.lambda,
+            &state.active,
+        )?;
         let mut inner = ActiveSet::new(method, settings, start)?;
         let accuracy = inner.state.accuracy;
         // Where sides stood at the end of a load step is known to its tolerance. What sticks there may seem to violate

@@ -7,16 +7,10 @@
 //! In space the rows of a node that slips are turned: the first one is along d and has the given force, the second one
 //! is across d. It is a spring of compliance |w|/g, by which the force follows the direction of the slip.
 
+use super::tuning::FrictionTuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
-
-/// Springs across slips are at most this many times softer than nodes: of a node with rows of its own, and of one that
-/// shares its rows with others. There M⁻¹ has rows that depend on each other, and soft springs make it a bad one.
-const SOFT: [f64; 2] = [100.0, 2.0];
-
-/// Springs that are stiffer than nodes by this factor are rigid.
-const RIGID: f64 = 1e-2;
 
 /// The state of a node in the equations of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,8 +33,8 @@ pub struct Node {
     bound: FrictionBound,
     /// k, a force per length of the size of the diagonal of K.
     stiffness: f64,
-    /// How much softer than the node a spring across its slip may be.
-    soft: f64,
+    /// The least and the largest compliance of a spring across its slip, in terms of that of the node.
+    springs: [f64; 2],
     /// Its state in the equations.
     pub state: NodeState,
     /// g in the equations.
@@ -78,6 +72,7 @@ impl Node {
         place: impl Fn(usize) -> usize,
         (lambda, active): (&[f64], &[bool]),
         compliance: &[f64],
+        tuning: &FrictionTuning,
     ) -> Node {
         let tangential: Vec<usize> = given.tangential.iter().map(|&r| place(r)).collect();
         let mut force = [0.0; 2];
@@ -99,7 +94,10 @@ impl Node {
             tangential,
             bound: given.bound,
             stiffness: if soft > 0.0 { 1.0 / soft } else { 0.0 },
-            soft: SOFT[usize::from(jump.rows_beside(place(given.normal)) > 3)],
+            springs: match jump.rows_beside(place(given.normal)) {
+                ..=3 => [tuning.rigid, tuning.soft],
+                _ => [tuning.rigid, tuning.soft_at_edges],
+            },
             state,
             g: size,
             axis: [1.0, 0.0],
@@ -145,7 +143,7 @@ impl Node {
     fn is_stiff_across(&self) -> bool {
         self.tangential.len() == 2
             && self.g > 0.0
-            && self.stiffness * self.slipped <= self.soft * self.g
+            && self.stiffness * self.slipped <= self.springs[1] * self.g
     }
 
     /// The row across the slip; `None` in the plane, and if it does not slip.
@@ -159,9 +157,11 @@ impl Node {
     /// The compliance of the row across the slip; 0 unless it slips in space.
     pub fn across(&self) -> f64 {
         match self.state {
-            NodeState::Slip(_) if self.is_stiff_across() => {
-                let soft = self.stiffness * self.slipped > RIGID * self.g;
-                f64::from(u8::from(soft)) * self.slipped / self.g
+            NodeState::Slip(_)
+                if self.is_stiff_across()
+                    && self.stiffness * self.slipped > self.springs[0] * self.g =>
+            {
+                self.slipped / self.g
             }
             _ => 0.0,
         }

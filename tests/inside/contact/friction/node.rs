@@ -12,7 +12,7 @@ fn node(state: NodeState, g: f64) -> Node {
             limit: 3.0,
         },
         stiffness: 2.0,
-        soft: SOFT[0],
+        springs: [1e-2, 100.0],
         state,
         g,
         axis: [1.0, 0.0],

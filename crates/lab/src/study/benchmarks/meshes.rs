@@ -150,15 +150,7 @@ impl Roller {
         }
         let top = outline[outline.len() - 1];
         outline.extend(&graded_line(top, [0.0; 2], &upper)[1..]);
-        let on = |p: [f64; 2]| (p[0].hypot(p[1] - r) - r).abs() < 1e-9 * r;
-        let curve = |ends: [[f64; 2]; 2]| {
-            let middle = [0, 1].map(|d| 0.5 * (ends[0][d] + ends[1][d]));
-            let out = [middle[0], middle[1] - r];
-            let length = out[0].hypot(out[1]);
-            // A chord through the inside of the circle is none of the boundary.
-            let near = length > 0.9 * r && ends.into_iter().all(on);
-            near.then(|| [out[0] * r / length, r + out[1] * r / length])
-        };
+        let curve = standing_circle(r);
         let mut pair = TwoBodyMesh::new(order);
         pair.add(&outline, &upper, &curve, 1);
         let lower = size(edge, depth * edge.min(0.5));
@@ -174,6 +166,19 @@ impl Roller {
             2 if y > -1e-9 * depth && x < 4.0 * a => 4,
             _ => 0,
         })
+    }
+}
+
+/// The middle of an edge between two points of the circle of radius r that stands on the origin: on the circle. `None`
+/// for other edges, such as a chord through its inside.
+pub fn standing_circle(r: f64) -> impl Fn([[f64; 2]; 2]) -> Option<[f64; 2]> {
+    move |ends| {
+        let on = |p: [f64; 2]| (p[0].hypot(p[1] - r) - r).abs() < 1e-9 * r;
+        let middle = [0, 1].map(|d| 0.5 * (ends[0][d] + ends[1][d]));
+        let out = [middle[0], middle[1] - r];
+        let length = out[0].hypot(out[1]);
+        let near = length > 0.9 * r && ends.into_iter().all(on);
+        near.then(|| [out[0] * r / length, r + out[1] * r / length])
     }
 }
 

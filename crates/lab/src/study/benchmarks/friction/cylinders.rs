@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::super::meshes::{ElementSize, TwoBodyMesh, RATIO};
+use super::super::meshes::{standing_circle, ElementSize, TwoBodyMesh, RATIO};
 use super::super::report::MeshSeries;
 use super::super::runner::Runner;
 use super::mindlin::{Mindlin, Stage, StageLimits, FACTOR, STAGES, STEPS};
@@ -83,15 +83,7 @@ fn mesh(name: &str, edge: f64, order: usize) -> MeshFile {
     let mut disc = graded_arc(centre, r, [-PI, -FRAC_PI_2], &fine);
     disc.extend(&graded_arc(centre, r, [-FRAC_PI_2, 0.0], &fine)[1..]);
     disc.extend(&graded_line([r, r], [-r, r], &fine)[1..]);
-    let on = |p: [f64; 2]| (p[0].hypot(p[1] - r) - r).abs() < 1e-9 * r;
-    let curve = |ends: [[f64; 2]; 2]| {
-        let middle = [0, 1].map(|d| 0.5 * (ends[0][d] + ends[1][d]));
-        let out = [middle[0], middle[1] - r];
-        let length = out[0].hypot(out[1]);
-        // A chord through the inside of the circle is none of the boundary.
-        let near = length > 0.9 * r && ends.into_iter().all(on);
-        near.then(|| [out[0] * r / length, r + out[1] * r / length])
-    };
+    let curve = standing_circle(r);
     let coarse = size(edge);
     let corners = [[-r, -r], [r, -r], [r, 0.0], [0.0; 2], [-r, 0.0], [-r, -r]];
     let mut block = vec![corners[0]];
