@@ -5,6 +5,8 @@
 //! | [`ActiveSet`] | the equations on the set that multipliers and gaps ask for |
 //! | [`AugmentedLagrangian`] | semismooth Newton steps on springs, and trials of the sets that they find |
 //! | [`Smalbe`] | bound-constrained problems by MPRGP, and trials of the sets that they find |
+//! | [`Friction`] | the equations on the rows that hold and the nodes that stick, with given forces along slips |
+//! | [`FrictionLagrangian`] | semismooth Newton steps with discs, and trials of the states that they find |
 //!
 //! A trial wraps a strategy: it is an [`ActiveSet`] that is followed for as long as it comes nearer. A new strategy is
 //! a file with a [`Strategy`](super::strategy::Strategy), and a line in [`begin`](DualProblem::begin).
@@ -14,7 +16,7 @@ use super::certified_signs::{signs, Signs};
 use super::course::DualCourse;
 use super::driver::{self, Begin, Begun, InnerProblem, Verdict};
 use super::existence::Existence;
-use super::friction::{self, Friction};
+use super::friction::{self, Friction, FrictionLagrangian};
 use super::lagrangian::AugmentedLagrangian;
 use super::modes::GivenMultipliers;
 use super::settings::{ContactSettings, ContactType};
@@ -39,11 +41,12 @@ pub(crate) fn solve(
     method.with_rows_kept(|| {
         Existence::new(method, &method.dual(), settings).of_gaps()?;
         let friction = friction::is_asked_for(method);
-        if friction && settings.kind != ContactType::ActiveSet {
+        if friction && settings.kind == ContactType::Smalbe {
             return Err(Error::input(format!(
-                "-fetifeti_contact_type is {} in a problem with friction or soft contact, expected {}",
+                "-fetifeti_contact_type is {} in a problem with friction or soft contact, expected {} or {}",
                 settings.kind.name(),
-                ContactType::ActiveSet.name()
+                ContactType::ActiveSet.name(),
+                ContactType::AugmentedLagrangian.name()
             )));
         }
         let problem = DualProblem {
@@ -88,6 +91,10 @@ impl InnerProblem for DualProblem<'_> {
             Begin::Again(state) => (ContactType::ActiveSet, Some(state)),
         };
         if self.friction {
+            if kind == ContactType::AugmentedLagrangian {
+                let state = start.unwrap_or_else(|| State::cold(&method.dual().stiffness.jump));
+                return Ok(Box::new(FrictionLagrangian::new(method, settings, state)?));
+            }
             let friction = Friction::new(method, settings, start.as_ref())?;
             return Ok(Box::new(friction));
         }

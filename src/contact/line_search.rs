@@ -4,6 +4,8 @@
 //!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,           s_j = μ_j + (B u − c)_j / C_j
 //! ```
 //!
+//! Nodes with friction add the terms of their discs ([`Disc`]).
+//!
 //! Displacements of the loop satisfy K u = f − Bᵀλ with some multipliers λ, between two of them both are interpolated,
 //! and along the segment
 //!
@@ -16,6 +18,7 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::anchors::Anchors;
+use super::disc::Disc;
 use super::piecewise_quadratic::line_minimum;
 use super::tuning::Tuning;
 use crate::substructures::Law;
@@ -54,6 +57,8 @@ pub struct Penalty<'a> {
     pub multiplier: &'a [f64],
     /// C.
     pub compliance: &'a [f64],
+    /// Nodes with friction, and the bounds of their forces.
+    pub discs: &'a [Disc],
     /// The anchors of bodies, if there are any.
     pub anchors: Option<&'a Anchors>,
     /// How exact the length of a step is.
@@ -69,14 +74,42 @@ impl Penalty<'_> {
 
     /// s at a point; zero for rows that do not count.
     pub fn pull(&self, at: &LineSearchPoint) -> Vec<f64> {
-        let of = |i: usize| {
-            if self.law[i].is_inequality() {
-                self.multiplier[i] + at.gap[i] / self.compliance[i]
-            } else {
-                0.0
-            }
-        };
-        (0..at.gap.len()).map(of).collect()
+        let of = |i: usize| self.multiplier[i] + at.gap[i] / self.compliance[i];
+        let mut out = vec![0.0; at.gap.len()];
+        for (i, _) in self.inequalities() {
+            out[i] = of(i);
+        }
+        for &i in self.discs.iter().flat_map(|d| &d.rows) {
+            out[i] = of(i);
+        }
+        out
+    }
+
+    /// The forces of a pull s: those that rows bear, and projections onto discs.
+    pub fn forces(&self, pull: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; pull.len()];
+        for (i, law) in self.inequalities() {
+            out[i] = law.project(pull[i]);
+        }
+        for disc in self.discs {
+            let force = disc.project(disc.of(pull));
+            disc.rows.iter().zip(force).for_each(|(&i, f)| out[i] = f);
+        }
+        out
+    }
+
+    /// At `t` on the way from one point to another: the change of w along all of it, s, the forces λ, and their change
+    /// along all of it.
+    fn on_disc(&self, disc: &Disc, [from, to]: [&LineSearchPoint; 2], t: f64) -> [[f64; 2]; 4] {
+        let mut out = [[0.0; 2]; 4];
+        for (k, &i) in disc.rows.iter().enumerate() {
+            let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
+            out[0][k] = gap;
+            out[1][k] = self.multiplier[i] + (from.gap[i] + t * gap) / self.compliance[i];
+            out[2][k] = from.force[i] + t * force;
+            out[3][k] = force;
+        }
+        out
     }
 
     /// φ'(t) and φ''(t) on the way from one point to another. Collective.
@@ -93,6 +126,15 @@ impl Penalty<'_> {
             let s = self.multiplier[i] + (from.gap[i] + t * gap) / self.compliance[i];
             sums[0] += gap * (law.project(s) - (from.force[i] + t * force));
             sums[1] += gap * (f64::from(u8::from(law.bears(s))) * gap / self.compliance[i] - force);
+        }
+        for disc in self.discs {
+            let [gap, s, now, force] = self.on_disc(disc, [from, to], t);
+            let given = disc.project(s);
+            let change = disc.derivative(s, gap.map(|w| w / self.compliance[disc.rows[0]]));
+            for k in 0..2 {
+                sums[0] += gap[k] * (given[k] - now[k]);
+                sums[1] += gap[k] * (change[k] - force[k]);
+            }
         }
         sum_all(comm, &mut sums);
         let [a, b] = self.slope_of_anchors(comm, from, to, t);
@@ -125,6 +167,14 @@ impl Penalty<'_> {
             let [was, is] = [0.0, t].map(|t| law.project(mu + (from.gap[i] + t * gap) / c));
             sum[0] += 0.5 * c * (is - was) * (is + was);
             sum[0] -= t * gap * (from.force[i] + 0.5 * t * force);
+        }
+        for disc in self.discs {
+            let [_, was, now, _] = self.on_disc(disc, [from, to], 0.0);
+            let [gap, is, _, force] = self.on_disc(disc, [from, to], t);
+            sum[0] += self.compliance[disc.rows[0]] * (disc.value(is) - disc.value(was));
+            for k in 0..2 {
+                sum[0] -= t * gap[k] * (now[k] + 0.5 * t * force[k]);
+            }
         }
         sum_all(comm, &mut sum);
         // It is a parabola along the way.

@@ -7,8 +7,9 @@
 //! The loop (`driver`) calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are
 //! factored once. There are three strategies (`dual_problem`): a primal-dual active set (`active_set`); damped Newton
 //! steps on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE
-//! with MPRGP (`smalbe`). Sets that they propose are repaired (`repairs`): rows are put back that hold bodies, bodies
-//! are placed, dependent rows agree. Whether there is a solution at all is asked in one place (`existence`).
+//! with MPRGP (`smalbe`). With friction the first two know nodes that stick and slip (`friction`). Sets that they
+//! propose are repaired (`repairs`): rows are put back that hold bodies, bodies are placed, dependent rows agree.
+//! Whether there is a solution at all is asked in one place (`existence`).
 
 mod active_set;
 mod anchored;
@@ -16,6 +17,7 @@ mod anchors;
 mod augmented;
 mod certified_signs;
 mod course;
+mod disc;
 pub mod driver;
 mod dual_problem;
 mod existence;

@@ -138,6 +138,7 @@ impl<'a> SemismoothNewton<'a> {
             law: &self.law,
             multiplier: &self.multiplier,
             compliance: &self.compliance,
+            discs: &[],
             anchors: self.anchors.as_ref(),
             tuning: self.tuning,
         }

@@ -9,7 +9,9 @@
 //! factored again, and the operators stay symmetric. Normal rows follow the rule of the active set in the same step.
 
 mod judged;
+mod lagrangian;
 mod mixing;
+mod newton;
 mod node;
 mod pose;
 pub(super) mod tuning;
@@ -19,13 +21,14 @@ use super::course::DualCourse;
 use super::modes::{CompliantRows, TurnedRows};
 use super::settings::ContactSettings;
 use super::state::{ActiveSetProgress, State, Step};
-use super::strategy::{Proposal, Strategy};
+use super::strategy::{Checkpoint, Proposal, Strategy};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
 pub use judged::error;
 use judged::nodes;
+pub use lagrangian::FrictionLagrangian;
 use mixing::Mixing;
 use node::{Node, NodeState};
 use parallel::exchange::{any, max_all, sum_all};
@@ -251,6 +254,13 @@ impl Strategy<DualCourse> for Friction<'_> {
         &self.inner.state
     }
 
+    fn checkpoint(&self) -> Checkpoint {
+        match self.inner.state.safeguarded {
+            true => Checkpoint::HandOver,
+            false => Checkpoint::Update,
+        }
+    }
+
     /// The equations of one set of states, again with the forces of friction that follow from their multipliers until
     /// those are at rest, or a state changes.
     fn step(&mut self) -> Result<(Step, Proposal<Status>)> {
@@ -272,11 +282,13 @@ impl Strategy<DualCourse> for Friction<'_> {
                 step = step.continuing(&before);
                 self.inner.state.steps -= 1;
             }
+            // Equations of states on the way may have no solution, or one without digits. Springs have one.
+            if status.broke_down() || !self.is_finite() {
+                self.inner.state.safeguarded = true;
+                return Ok((step, Proposal::GoOn));
+            }
             if !status.converged() {
                 return Ok((step, Proposal::End(status)));
-            }
-            if !self.is_finite() {
-                return Ok((step, Proposal::End(Status::Certificate)));
             }
             let state = &mut self.inner.state;
             state.safeguarded = false;
@@ -304,6 +316,7 @@ impl Strategy<DualCourse> for Friction<'_> {
             self.inner.tight &= still;
             if !(settled && stays) || is_last {
                 self.progress.note(step.wrong);
+                self.inner.state.safeguarded = self.progress.stalled(tuning.wanders);
                 return Ok((step, Proposal::GoOn));
             }
             whole = Some(step);

@@ -146,6 +146,16 @@ impl Node {
             && self.stiffness * self.slipped <= self.springs[1] * self.g
     }
 
+    /// Notes that the rows have the directions that were given.
+    pub fn turned_back(&mut self) {
+        self.axis = [1.0, 0.0];
+    }
+
+    /// The bound g that follows from these multipliers.
+    pub fn bound(&self, lambda: &[f64]) -> f64 {
+        self.bound.at(lambda[self.normal])
+    }
+
     /// The row across the slip; `None` in the plane, and if it does not slip.
     pub fn slips_beside(&self) -> Option<usize> {
         match (self.state, &self.tangential[..]) {
@@ -168,7 +178,7 @@ impl Node {
     }
 
     /// Values on the rows, in the directions that were given.
-    fn given(&self, [first, second]: [f64; 2]) -> [f64; 2] {
+    pub fn given(&self, [first, second]: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [c * first - s * second, s * first + c * second]
     }

@@ -43,6 +43,20 @@ pub struct FrictionTuning {
     pub soft_at_edges: f64,
     /// Springs across slips that are stiffer than nodes by this factor are rigid.
     pub rigid: f64,
+    /// After this many steps without fewer wrong nodes and rows the augmented Lagrangian takes over.
+    pub wanders: usize,
+    /// Its springs are at first as many times stiffer than the nodes.
+    pub springs: f64,
+    /// They are so at most.
+    pub stiffest: f64,
+    /// Springs across slips that are softer by this are left out there.
+    pub softest: f64,
+    /// Newton steps of a minimisation at most.
+    pub newton_steps: usize,
+    /// Minima with the same states before the loop on states is tried.
+    pub settled: usize,
+    /// Steps of the loop on states without fewer wrong nodes and rows, after which it was tried in vain.
+    pub tried: usize,
     /// A body slides away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,
 }
@@ -65,6 +79,13 @@ impl FrictionTuning {
         soft: 100.0,
         soft_at_edges: 2.0,
         rigid: 1e-2,
+        wanders: 12,
+        springs: 30.0,
+        stiffest: 1e4,
+        softest: 1e3,
+        newton_steps: 50,
+        settled: 2,
+        tried: 4,
         slides: 8,
     };
 }

@@ -29,6 +29,7 @@ fn the_minimum_along_the_step() {
             law: &[Law::Unilateral; 4],
             multiplier: &[0.0, 0.1, 0.0, 2.0],
             compliance: &[0.5, 0.01, 1e-6, 0.3],
+            discs: &[],
             anchors: None,
             tuning: &Tuning::DEFAULT,
         };
@@ -63,6 +64,7 @@ fn a_step_to_the_minimum_has_its_full_length() {
             law: &[Law::Unilateral],
             multiplier: &[0.0],
             compliance: &[0.5],
+            discs: &[],
             anchors: None,
             tuning: &Tuning::DEFAULT,
         };
@@ -81,6 +83,7 @@ fn a_step_may_go_beyond_its_end() {
             law: &[Law::Unilateral],
             multiplier: &[0.0],
             compliance: &[0.5],
+            discs: &[],
             anchors: None,
             tuning: &Tuning::DEFAULT,
         };
@@ -103,6 +106,7 @@ fn rows_that_do_not_count_change_nothing() {
                 law,
                 multiplier: &[0.0, 0.0],
                 compliance,
+                discs: &[],
                 anchors: None,
                 tuning: &Tuning::DEFAULT,
             };
@@ -135,6 +139,7 @@ fn anchors_count_along_the_step() {
             law: &[Law::Unilateral; 2],
             multiplier: &[0.0, 0.3],
             compliance: &[0.5, 0.1],
+            discs: &[],
             anchors: Some(&anchors),
             tuning: &Tuning::DEFAULT,
         };
