@@ -46,6 +46,11 @@ impl Status {
         matches!(self, Status::Krylov(reason) if reason.broke_down())
     }
 
+    /// Whether the Krylov method reached its largest number of iterations.
+    pub(crate) fn ran_out(&self) -> bool {
+        matches!(self, Status::Krylov(reason) if reason.code == ConvergedReason::ITS)
+    }
+
     /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: rounding counts as an
     /// absolute tolerance, operators that have lost their digits as a preconditioner that failed, a residual that
     /// rounding holds up as a breakdown, too many contact steps as too many iterations.

@@ -9,6 +9,7 @@ mod elastic;
 mod failed;
 mod friction;
 mod friction_reference;
+mod friction_renewed;
 mod friction_walls;
 mod jumps;
 mod many;

@@ -76,20 +76,6 @@ fn bad_friction_is_named() {
     );
 }
 
-#[test]
-fn scenes_that_are_not_solved_yet_are_refused() {
-    let at = "s.toml:9: friction of the obstacle of s.toml, line 9";
-    let update = block("friction = 0.1\n[steps]\ncount = 2\nupdate = true");
-    let text = Scene::parse("s.toml", &update)
-        .map(|_| ())
-        .expect_err("no")
-        .to_string();
-    assert!(
-        text.ends_with("with `update` in [steps], expected contacts that stay as they are"),
-        "{text} {at}"
-    );
-}
-
 /// Where the values of a block in space are given along one direction there is friction along the other. If they slide
 /// there, they would be half a slip.
 #[test]

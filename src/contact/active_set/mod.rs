@@ -282,17 +282,21 @@ impl<'a> ActiveSet<'a> {
         self.fresh = false;
     }
 
-    /// Puts rows into `active` so that the load drives no body away, with `friction` also tangential ones. Collective.
+    /// Puts rows into `active` so that the load drives no body away, with `friction` also tangential ones with these
+    /// scores. Collective.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.
-    pub fn hold(&self, active: &mut [bool], load: &KernelLoad, friction: bool) -> Result<usize> {
+    pub fn hold(
+        &self,
+        active: &mut [bool],
+        load: &KernelLoad,
+        friction: Option<&[f64]>,
+    ) -> Result<usize> {
         let dual = self.method.dual();
         let (gaps, law) = (&self.gaps, &dual.stiffness.jump.law);
         let score = |r: usize| match law[r].is_friction() {
-            // Of nodes that slip the one that has slipped least: the others then slip on in their directions.
-            true if friction => -gaps[r].abs(),
-            true => f64::NEG_INFINITY,
+            true => friction.map_or(f64::NEG_INFINITY, |scores| scores[r]),
             false => self.state.lambda[r] + gaps[r],
         };
         self.repairs.hold(&dual, active, &score, load)

@@ -75,6 +75,8 @@ pub struct FrictionLagrangian<'a> {
     same: usize,
     /// Newton steps of this minimisation.
     inner: usize,
+    /// Newton steps in a row for which rows had to be put back.
+    pub(super) slides: usize,
     trial: Option<Trial<'a>>,
 }
 
@@ -145,6 +147,7 @@ impl<'a> FrictionLagrangian<'a> {
             kinds: Vec::new(),
             same: 0,
             inner: 0,
+            slides: 0,
             trial: None,
             method,
             settings,
@@ -185,7 +188,8 @@ impl<'a> FrictionLagrangian<'a> {
         let before = before.map(|s| self.kinds(&s));
         let newton = self.newton()?;
         let (mut step, status) = (newton.step, newton.status);
-        let failed = !status.converged() && !status.broke_down();
+        // A step that ends early is one all the same: the line search has the word.
+        let failed = !status.converged() && !status.broke_down() && !status.ran_out();
         let finite = self.point.iter().flat_map(|p| p.force.iter().chain(&p.gap));
         let failed = failed || any(comm, finite.into_iter().any(|v| !v.is_finite()));
         if failed {

@@ -54,7 +54,7 @@ pub struct Friction<'a> {
     /// Springs across slips in space, and rows along them.
     springs: CompliantRows<'a>,
     turned: TurnedRows<'a>,
-    /// Steps in a row after which nothing but friction beyond its bound held a body.
+    /// Steps in a row after which rows had to be put back.
     slides: usize,
 }
 
@@ -221,8 +221,22 @@ impl<'a> Friction<'a> {
             let sticks = node.state == NodeState::Stick;
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
+        // Of nodes that slip the one that slips least: the others then slip on in their directions. Where that does not
+        // help, rows that push come first: a body that tips comes to rest on them.
+        let tuning = &self.settings.tuning.friction;
+        let last = if self.slides >= tuning.tips {
+            f64::MAX.sqrt()
+        } else {
+            0.0
+        };
+        let length = self.inner.length.max(f64::MIN_POSITIVE);
+        let mut scores = vec![0.0; active.len()];
+        for node in &self.nodes {
+            let score = -node.excess - last * (1.0 + node.excess / length);
+            node.tangential.iter().for_each(|&t| scores[t] = score);
+        }
         let mut held = active.clone();
-        self.inner.hold(&mut held, &load, true)?;
+        let put_back = self.inner.hold(&mut held, &load, Some(&scores))?;
         let mut restored = false;
         for node in &mut self.nodes {
             let back = node.tangential.iter().any(|&t| held[t] && !active[t]);
@@ -236,14 +250,10 @@ impl<'a> Friction<'a> {
         }
         let comm = self.method.session.comm();
         let restored = any(comm, restored);
-        self.slides = if restored { self.slides + 1 } else { 0 };
-        if self.slides > self.settings.tuning.friction.slides {
+        self.slides = if put_back > 0 { self.slides + 1 } else { 0 };
+        if self.slides > tuning.slides {
             // Which body it is, and its motion: that of the load beside all forces of friction that are given.
-            let law = self.method.dual().stiffness.jump.law.clone();
-            for (on, law) in active.iter_mut().zip(&law) {
-                *on &= !law.is_friction();
-            }
-            self.inner.hold(&mut active, &load, false)?;
+            self.inner.hold(&mut active, &load, None)?;
         }
         Ok(restored)
     }

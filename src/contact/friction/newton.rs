@@ -19,6 +19,7 @@ use crate::feti::krylov::iterate::{IterationControl, KrylovRun};
 use crate::feti::krylov::target::target;
 use crate::status::Status;
 use crate::Result;
+use base::ErrorKind;
 use parallel::exchange::any;
 use std::time::Instant;
 
@@ -49,9 +50,15 @@ impl FrictionLagrangian<'_> {
         let clock = Instant::now();
         let (method, tuning) = (self.method, &self.settings.tuning);
         let comm = method.session.comm();
-        let restored = self.pose()?;
+        let softest = tuning.friction.softest;
+        let posed = self.pose(softest);
+        let posed = posed.and_then(|restored| Ok((restored, self.begin()?)));
+        // A body that little but rows across slips holds may be too loose for the natural coarse problem.
+        let (restored, first) = match posed {
+            Err(e) if e.kind() == ErrorKind::NotConverged => (self.pose(0.0)?, self.begin()?),
+            other => other?,
+        };
         let active = method.dual().stiffness.jump.active.clone();
-        let first = self.begin()?;
         let least = target(&method.ksp, self.state.reference, self.length, self.n_rows)?;
         let softer = (tuning.stiffness / self.stiffness).min(1.0);
         let least = (tuning.friction.digits * softer * least).max(self.least);
@@ -127,9 +134,10 @@ impl FrictionLagrangian<'_> {
         self.at.evaluate_projected(&dual)
     }
 
-    /// Hands the equations at the present point to the method. Returns whether rows had to be put back, because the
-    /// others leave a body loose that the load drives. Collective.
-    fn pose(&mut self) -> Result<bool> {
+    /// Hands the equations at the present point to the method. Springs across slips are at most `softest` times softer
+    /// than others. Returns whether rows had to be put back, because the others leave a body loose that the load
+    /// drives. Collective.
+    fn pose(&mut self, softest: f64) -> Result<bool> {
         let (method, comm) = (self.method, self.method.session.comm());
         let pull = self.point.as_ref().map(|p| self.penalty().pull(p));
         for (node, disc) in self.nodes.iter_mut().zip(&self.discs) {
@@ -164,6 +172,15 @@ impl FrictionLagrangian<'_> {
                 Some(point) => point.gap[i],
                 None => -self.compliance[i],
             };
+            if !restored && self.slides > self.settings.tuning.friction.slides {
+                // Which body slides away, and its motion: that of the load beside all given forces of friction.
+                let score = |i: usize| match self.law[i].is_friction() {
+                    true => f64::NEG_INFINITY,
+                    false => score(i),
+                };
+                let mut held = active.clone();
+                self.repairs.hold(&dual, &mut held, &score, &kernel)?;
+            }
             restored |= self.repairs.hold(&dual, &mut active, &score, &kernel)? > 0;
             drop(dual);
             let mut sticks = false;
@@ -180,7 +197,8 @@ impl FrictionLagrangian<'_> {
                 break active;
             }
         };
-        let compliance = self.soften(&mut active, &pull);
+        self.slides = if restored { self.slides + 1 } else { 0 };
+        let compliance = self.soften(&mut active, &pull, softest);
         let jumps = self.jumps(&compliance, &pull);
         self.springs.soften(&compliance);
         method.set_active(&active)?;
@@ -194,7 +212,7 @@ impl FrictionLagrangian<'_> {
     }
 
     /// The compliance of the rows in the equations. Rows across slips come into the set, unless they are very soft.
-    fn soften(&self, active: &mut [bool], pull: &Option<Vec<f64>>) -> Vec<f64> {
+    fn soften(&self, active: &mut [bool], pull: &Option<Vec<f64>>, softest: f64) -> Vec<f64> {
         let mut compliance = self.compliance.clone();
         for (i, law) in self.law.iter().enumerate() {
             if !law.is_inequality() && !law.is_friction() {
@@ -207,7 +225,7 @@ impl FrictionLagrangian<'_> {
             };
             let [a, b] = disc.of(s);
             let softer = a.hypot(b) / disc.radius;
-            active[across] = softer < self.settings.tuning.friction.softest;
+            active[across] = softer < softest;
             compliance[across] *= softer;
         }
         compliance

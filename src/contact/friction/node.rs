@@ -43,6 +43,8 @@ pub struct Node {
     axis: [f64; 2],
     /// |w| along the slip of the last step.
     slipped: f64,
+    /// (|s| − g)/k after the last step: how far the node slips, or would slip if it had stuck with more than its bound.
+    pub excess: f64,
 }
 
 /// The solution of a step on the owned rows: multipliers, gaps B u − C λ − c, and which rows are to hold.
@@ -102,6 +104,7 @@ impl Node {
             g: size,
             axis: [1.0, 0.0],
             slipped: 0.0,
+            excess: 0.0,
         }
     }
 
@@ -227,11 +230,11 @@ impl Node {
         out.map(|v| self.given(v))
     }
 
-    /// The state that follows from a step, and its g.
-    fn next(&self, step: &Step<'_>) -> (NodeState, f64) {
+    /// The state that follows from a step, its g, and (|s| − g)/k.
+    fn next(&self, step: &Step<'_>) -> (NodeState, f64, f64) {
         let g = self.bound.at(step.lambda[self.normal]);
         if !step.active[self.normal] && !self.bound.acts_apart() {
-            return (NodeState::Apart, 0.0);
+            return (NodeState::Apart, 0.0, 0.0);
         }
         let [mut force, slip] = self.tangent(step);
         // The force along a slip is that of the next step.
@@ -265,17 +268,21 @@ impl Node {
                 false => NodeState::Slip(s.map(|s| s / size)),
             }
         };
-        (state, g)
+        let excess = match self.stiffness {
+            k if k > 0.0 => (size - g).max(0.0) / k,
+            _ => 0.0,
+        };
+        (state, g, excess)
     }
 
     /// Takes the node to the state that follows from a step.
     pub fn update(&mut self, step: &Step<'_>) -> Change {
         let before = self.force();
         let slip = self.tangent(step)[1];
-        let (state, g) = self.next(step);
+        let (state, g, excess) = self.next(step);
         let kind = std::mem::discriminant(&self.state);
         let flips = kind != std::mem::discriminant(&state);
-        (self.state, self.g) = (state, g);
+        (self.state, self.g, self.excess) = (state, g, excess);
         self.slipped = match state {
             NodeState::Slip(d) => Some(d[0] * slip[0] + d[1] * slip[1])
                 .filter(|along| *along > step.nothing)

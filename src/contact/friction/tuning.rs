@@ -57,6 +57,8 @@ pub struct FrictionTuning {
     pub settled: usize,
     /// Steps of the loop on states without fewer wrong nodes and rows, after which it was tried in vain.
     pub tried: usize,
+    /// After so many steps in a row in which rows had to be put back, those that push come before friction.
+    pub tips: usize,
     /// A body slides away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,
 }
@@ -86,6 +88,7 @@ impl FrictionTuning {
         newton_steps: 50,
         settled: 2,
         tried: 4,
+        tips: 2,
         slides: 8,
     };
 }

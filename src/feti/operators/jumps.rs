@@ -31,6 +31,19 @@ impl Stiffness {
         self.dual_halo.sum(&sum, out)
     }
 
+    /// B u on the owned rows of B_gl, for displacements of each local subdomain by local dof. Collective.
+    pub fn jumps_of(&self, u: &[Vec<f64>]) -> Result<Vec<f64>> {
+        let mut work = self.work();
+        for (j, w) in work.iter_mut().enumerate() {
+            let interface = &self.locals[j].gamma().interface;
+            let at = interface.iter().map(|&i| u[j][i as usize]);
+            w.y.iter_mut().zip(at).for_each(|(y, u)| *y = u);
+        }
+        let out = PetscVec::mpi(&self.session, self.jump.n_owned)?;
+        self.jump_of_all(&work, &out)?;
+        out.to_vec()
+    }
+
     /// diag(B diag(K)⁻¹ Bᵀ) on the owned rows of B_gl, whether or not they hold, and zero on the others: by how much a
     /// row opens under a unit force if the nodes give way alone. Collective.
     pub fn compliance_of_rows(&self, problem: &Problem) -> Result<Vec<f64>> {

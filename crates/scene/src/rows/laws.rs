@@ -80,14 +80,11 @@ pub(crate) fn collect(
         };
         let friction = match &law.friction {
             None => None,
-            Some(friction) => {
-                place.check()?;
-                place.friction(
-                    friction,
-                    stiffness(&law.stick_stiffness, "stick_stiffness")?,
-                    motion(row.source),
-                )?
-            }
+            Some(friction) => place.friction(
+                friction,
+                stiffness(&law.stick_stiffness, "stick_stiffness")?,
+                motion(row.source),
+            )?,
         };
         out.push(NodeLaw {
             normal,
@@ -148,17 +145,6 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Whether friction is solved here.
-    fn check(&self) -> Result<()> {
-        let update = self.spec.steps.as_ref().is_some_and(|s| s.update);
-        let why = if update {
-            "with `update` in [steps], expected contacts that stay as they are"
-        } else {
-            return Ok(());
-        };
-        Err(self.refused(why))
-    }
-
     fn refused(&self, why: &str) -> Error {
         let location = self.spec.location_of(self.entry);
         let entry = self.entry.named(Some(location));

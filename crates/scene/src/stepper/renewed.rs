@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::time::Instant;
 
+use super::slid::{self, Forces};
 use crate::checked::Scene;
 use crate::displaced::Displaced;
 use base::{Error, Result};
@@ -12,7 +13,7 @@ use fetifeti::inside::factorisations;
 use fetifeti::problem::{BodyNode, RowLabel, RowSource};
 use fetifeti::solution::{SolvedRow, State};
 use fetifeti::{FetiFeti, Solution};
-use parallel::exchange::total;
+use parallel::exchange::{any, total};
 use petsc::Session;
 
 /// A scene whose contacts are renewed, or stay as they are.
@@ -22,8 +23,19 @@ pub(super) struct Renewed {
     /// The displacements at the end of the last step, and those for which the present contacts were made.
     end: Displaced,
     start: Displaced,
-    /// The rows of the last step, and its multipliers inside bodies.
-    last: Option<(Vec<SolvedRow>, Vec<f64>)>,
+    /// The last step; `None` before its end.
+    last: Option<Ended>,
+}
+
+/// The end of a load step.
+struct Ended {
+    rows: Vec<SolvedRow>,
+    /// The rows of friction.
+    tangential: Vec<SolvedRow>,
+    /// The multipliers inside bodies.
+    inside: Vec<f64>,
+    /// The displacements of each local subdomain, by local dof.
+    u: Vec<Vec<f64>>,
 }
 
 /// The cost of renewed contacts.
@@ -55,7 +67,12 @@ impl Renewed {
     pub fn end(&mut self, u: Displaced, solution: &Solution) -> Displaced {
         let out = u.since(&self.start);
         self.end = u;
-        self.last = Some((solution.rows().to_vec(), solution.inside_bodies().to_vec()));
+        self.last = Some(Ended {
+            rows: solution.rows().to_vec(),
+            tangential: solution.tangential_rows().to_vec(),
+            inside: solution.inside_bodies().to_vec(),
+            u: solution.u.clone(),
+        });
         out
     }
 
@@ -110,17 +127,16 @@ impl Renewed {
         solver: &mut FetiFeti,
         step: usize,
     ) -> Result<Option<(Option<State>, RenewalCost)>> {
-        let Some((last, inside)) = self.last.take() else {
+        let Some(last) = self.last.take() else {
             return Ok(None);
         };
-        let renewed = self.renew_after(&last, &inside, owns, solver, step);
+        let renewed = self.renew_after(&last, owns, solver, step);
         renewed.map(Some).map_err(|e| self.at_step(step, e))
     }
 
     fn renew_after(
         &mut self,
-        last: &[SolvedRow],
-        inside: &[f64],
+        last: &Ended,
         owns: &dyn Fn(usize) -> bool,
         solver: &mut FetiFeti,
         step: usize,
@@ -128,13 +144,20 @@ impl Renewed {
         let session = solver.session().clone();
         let (clock, before) = (Instant::now(), factorisations());
         let scene = self.scene();
-        let solved = SolvedRow::on_all_ranks(session.comm(), last);
+        let solved = SolvedRow::on_all_ranks(session.comm(), &last.rows);
         let mut known: HashMap<RowKey, (f64, bool)> = HashMap::new();
         for row in &solved {
             let value = (row.multiplier, row.holds());
             for place in places(scene, &row.label, row.is_inequality()) {
                 known.insert(place, value);
             }
+        }
+        let mut forces = Forces::new();
+        for row in SolvedRow::on_all_ranks(session.comm(), &last.tangential) {
+            let first = places(scene, &row.label, true).next();
+            let force = forces.entry(first.expect("a place")).or_default();
+            let normal = row.normal();
+            (0..3).for_each(|k| force[k] += row.multiplier * normal[k]);
         }
         self.renew_at_end(&session, step)?;
         let scene = self.scene();
@@ -151,7 +174,14 @@ impl Renewed {
         let new = |s: Option<(f64, bool)>| s.unwrap_or((0.0, true));
         let start: Vec<(f64, bool)> = start.into_iter().map(new).collect();
         let some = total(session.comm(), found as f64) > 0.0;
-        let state = some.then(|| solver.start(inside, &start));
+        let slid = slid::renewed(scene, owns, (solver, &last.u), (step - 1, &forces))?;
+        // With friction the loop starts from where the sides stand.
+        let some = some || any(session.comm(), !slid.is_empty());
+        let state = some.then(|| {
+            let mut state = solver.start(&last.inside, &start);
+            state.slid = slid;
+            state
+        });
         let factored = (factorisations() - before) as f64;
         let cost = RenewalCost {
             factored: total(session.comm(), factored) as usize,
@@ -174,10 +204,14 @@ impl Renewed {
 }
 
 /// Where a row is: what it joins its node to, the node, and the direction of an equation.
-type RowKey = (RowSource, BodyNode, usize);
+pub(super) type RowKey = (RowSource, BodyNode, usize);
 
 /// The places of a row: first that of the node that carries its multiplier. Interfaces are named by the other body.
-fn places(scene: &Scene, label: &RowLabel, inequality: bool) -> impl Iterator<Item = RowKey> {
+pub(super) fn places(
+    scene: &Scene,
+    label: &RowLabel,
+    inequality: bool,
+) -> impl Iterator<Item = RowKey> {
     let n = label.normal.map(f64::abs);
     let direction = if inequality {
         3

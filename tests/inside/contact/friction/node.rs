@@ -17,6 +17,7 @@ fn node(state: NodeState, g: f64) -> Node {
         g,
         axis: [1.0, 0.0],
         slipped: 0.0,
+        excess: 0.0,
     }
 }
 
