@@ -5,9 +5,11 @@ mod support;
 
 mod bodies;
 mod certified;
+mod conic;
 mod elastic;
 mod failed;
 mod friction;
+mod friction_conic;
 mod friction_reference;
 mod friction_walls;
 mod jumps;
