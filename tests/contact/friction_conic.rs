@@ -112,6 +112,8 @@ struct Tally {
     /// Steps of Coulomb's law whose fixed point is another, or does not come to rest: there the solver has the forces
     /// of the programme with the bounds that it ends with.
     other: usize,
+    /// Scenes that the programme does not solve to its tolerance.
+    undecided: usize,
     /// Scenes that are refused, with a programme that has no solution.
     without: usize,
     failed: Vec<String>,
@@ -248,15 +250,15 @@ fn compare(session: &Session, name: &str, text: &str, tally: &mut Tally) {
             }
             other => {
                 let far = other.map(|o| judged.distance(&o));
-                assert!(!tresca, "{name}, step {step}: {far:?}\n{text}");
+                let wrong = tresca && far.is_some();
+                assert!(!wrong, "{name}, step {step}: {far:?}\n{text}");
                 let bounds = conic.bounds(&multipliers(&solution));
-                let other = conic.tresca(&loads, &gaps, &bounds);
-                let other = other.unwrap_or_else(|e| panic!("{name}, step {step}: {e:?}\n{text}"));
+                let Ok(other) = conic.tresca(&loads, &gaps, &bounds) else {
+                    tally.undecided += 1;
+                    return;
+                };
                 let now = judged.distance(&other);
-                assert!(
-                    agrees(&other),
-                    "{name}, step {step}: {far:?}, {now:?}\n{text}"
-                );
+                assert!(agrees(&other), "{name}, step {step}: {now:?}\n{text}");
                 println!("{name}, step {step}: the fixed point is not that of the solver, {far:?}");
                 tally.other += 1;
                 other
@@ -284,7 +286,8 @@ fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u6
         }
         println!(
             "{kind}: load steps that agree: Tresca {}, Coulomb {} (forces within {:.1e}, energy {:.1e}), another \
-             solution {}; open, stick, slip: {:?}, wrong {}; without a solution {}, not solved: {:?}",
+             solution {}; open, stick, slip: {:?}, wrong {}; undecided {}, without a \
+             solution {}, not solved: {:?}",
             tally.right[0],
             tally.right[1],
             tally.force,
@@ -292,6 +295,7 @@ fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u6
             tally.other,
             tally.states,
             tally.wrong,
+            tally.undecided,
             tally.without,
             tally.failed
         );
@@ -303,7 +307,7 @@ fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u6
 #[test]
 fn held_blocks_have_the_solution_of_the_conic_programme() {
     let tally = all("blocks", held, sample(10, 0..400));
-    assert!(tally.failed.is_empty() && tally.without == 0);
+    assert!(tally.failed.is_empty() && (tally.without, tally.undecided) == (0, 0));
     assert!(tally.right.iter().all(|n| *n > 10), "{:?}", tally.right);
     assert!(tally.states.iter().all(|n| *n > 10), "{:?}", tally.states);
     assert_eq!((tally.wrong, tally.other), (0, 0));
@@ -316,6 +320,7 @@ fn walls_have_the_solution_of_the_conic_programme() {
     let n = ids.len();
     let tally = all("walls", wall, ids.into_iter());
     assert!(tally.right[0] + tally.right[1] > tally.other / 4);
+    assert!(tally.undecided <= 1 + n / 20, "{}", tally.undecided);
     assert!(tally.failed.len() <= 3 + n / 3, "{:?}", tally.failed);
 }
 

@@ -10,6 +10,7 @@ mod elastic;
 mod failed;
 mod friction;
 mod friction_conic;
+mod friction_gallery;
 mod friction_reference;
 mod friction_walls;
 mod jumps;
