@@ -11,12 +11,16 @@ use crate::support::session::with_session;
 use fetifeti::problem::FrictionBound;
 use fetifeti::settings::MethodSettings;
 use fetifeti::solution::RowState;
-use fetifeti::{FetiFeti, Problem, Solution};
+use fetifeti::{FetiFeti, Problem, Settings, Solution};
 use petsc::Session;
 use scene::{Scene, Stepper};
 
-/// Forces and energies agree to this, relative to the largest force and to the work of the loads.
-const ACCURACY: f64 = 1e-6;
+/// Forces and energies agree to this, relative to the largest force and to the work of the loads. The programme has so
+/// many digits where bodies differ in stiffness and rows depend on each other.
+const ACCURACY: f64 = 2e-5;
+
+/// Steps of the contact loop: states that wander so long wander on.
+const STEPS: usize = 100;
 
 /// What is farther than this from a border, in units of force and length, has a state.
 const CLEAR: f64 = 1e-5;
@@ -203,7 +207,8 @@ fn compare(session: &Session, name: &str, text: &str, tally: &mut Tally) {
     let problem = parsed.substructures(&|_| true).expect("a good scene");
     let conic = Conic::new(&problem);
     let tresca = { problem.friction.iter() }.all(|n| matches!(n.bound, FrictionBound::Tresca(_)));
-    let settings = MethodSettings::default().rtol(1e-10);
+    let mut settings = Settings::from(MethodSettings::default().rtol(1e-10));
+    settings.contact.max_it = STEPS;
     let solver = FetiFeti::new(session, problem.clone(), settings);
     let scene = Scene::parse("conic.toml", text).expect("a good scene");
     let solved = solver.and_then(|solver| Stepper::with_solver(scene, solver));
@@ -311,6 +316,7 @@ fn held_blocks_have_the_solution_of_the_conic_programme() {
     assert!(tally.right.iter().all(|n| *n > 10), "{:?}", tally.right);
     assert!(tally.states.iter().all(|n| *n > 10), "{:?}", tally.states);
     assert_eq!((tally.wrong, tally.other), (0, 0));
+    assert!(tally.force < 1e-6 && tally.energy < 1e-6);
 }
 
 /// Eight of two hundred walls, whose rows depend on each other, and where states may wander: that is said.
