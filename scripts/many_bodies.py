@@ -1,22 +1,28 @@
 #!/usr/bin/env python3
-"""Scenes of many bodies: a wall of bricks, or a box of spheres.
+"""Scenes of many bodies: a wall of bricks, a dry-stone wall, an arch, or a box of spheres.
 
     scripts/many_bodies.py wall COURSES BRICKS OUT      OUT/wall.toml, OUT/wall_bricks.txt, OUT/wall_halves.txt
+    scripts/many_bodies.py drystone COURSES STONES OUT  OUT/drystone.toml, OUT/drystone_stones.txt and _halves.txt
+    scripts/many_bodies.py arch VOUSSOIRS PERCENT OUT   OUT/arch.toml, OUT/arch_stones.txt
     scripts/many_bodies.py spheres ROW LAYERS OUT       OUT/spheres.toml, OUT/spheres.txt, OUT/spheres.msh
 
 The wall is in the plane: COURSES of BRICKS bricks of 2 x 1 in running bond, with half bricks at the ends of every
 second course, and a window in a frame of four bodies that are tied. It is pressed from the left and held at the right.
+FRICTION=0.6 in the environment gives it friction.
+
+The dry-stone wall is of such courses, without a window; friction alone holds it. The arch is a semicircle, PERCENT of
+its radius thick.
 
 The spheres have radius 1 and stand in layers of ROW x ROW and of one less each way, in the hollows of the layer below.
 4 4 makes 50 spheres, 10 11 makes 1,005.
 """
 
+import os
 import sys
 from pathlib import Path
 
-WALL = """# A wall of {count} bricks with a window, under its own weight and pressed from the left. Contact is without
-# friction: bed joints pass weight only, head joints wind only. The buttress and the frame of the window hold the
-# courses. Written by `scripts/many_bodies.py wall {courses} {bricks}`.
+WALL = """# A wall of {count} bricks with a window, under its own weight and pressed from the left. {says}. Written \
+by `scripts/many_bodies.py wall {courses} {bricks}`.
 
 title = "a wall of {count} bricks with a window"
 physics = "elasticity"
@@ -64,9 +70,7 @@ pressure = {{ left = 0.5 }}
 x = [{last_half}, {last_half}]
 dirichlet = {{ right = {{ x = 0 }} }}
 {frame}
-[interface]
-default = "contact"
-
+{contact}
 {ties}[options]
 fetifeti_ksp_rtol = 1e-8
 # Of many bodies few are stiff: the cheap weight does as well as M^-1.
@@ -84,9 +88,37 @@ poisson = 0.2
 load = [0, -1]
 """
 
+SMOOTH = """Contact is without
+# friction: bed joints pass weight only, head joints wind only. The buttress and the frame of the window hold the
+# courses"""
+
+ROUGH = """Contact is
+# with friction"""
+
 # Widest and highest window. A window as large as a third of any wall would have a lintel that bends by more than its
 # own height, and bricks that turn far: nothing for small displacements.
 WIDEST = 12
+
+
+def bond(courses, parts):
+    """The places of whole and of half bricks in the parts of each course."""
+    whole, halves = [], []
+    for y in range(courses):
+        for x, last in parts(y):
+            # The joints of even courses are at even x.
+            if (x + y) % 2 == 1:
+                halves.append((x, y))
+                x += 1
+            while x + 2 <= last:
+                whole.append((x, y))
+                x += 2
+            if x < last:
+                halves.append((x, y))
+    return whole, halves
+
+
+def table(out, name, places):
+    Path(out, name).write_text("# x y of the lower left corner\n" + "".join(f"{x} {y}\n" for x, y in places))
 
 
 def wall(courses, bricks, out):
@@ -97,20 +129,7 @@ def wall(courses, bricks, out):
     high = low + min(WIDEST, max(4, courses // 3 // 2 * 2))
     left = 2 * (bricks // 3) + 1
     right = left + min(WIDEST, 2 * max(2, bricks // 3))
-    whole, halves = [], []
-    for y in range(courses):
-        inside = low <= y < high
-        for first, last in [(0, left), (right, width)] if inside else [(0, width)]:
-            x = first
-            # The joints of even courses are at even x.
-            if (x + y) % 2 == 1:
-                halves.append((x, y))
-                x += 1
-            while x + 2 <= last:
-                whole.append((x, y))
-                x += 2
-            if x < last:
-                halves.append((x, y))
+    whole, halves = bond(courses, lambda y: [(0, left), (right, width)] if low <= y < high else [(0, width)])
     w, h = right - left, high - low
     parts = [
         ("sill", left, low, w, 1),
@@ -127,14 +146,121 @@ def wall(courses, bricks, out):
         for b in ["jamb_left", "jamb_right"]
     )
     count = len(whole) + len(halves)
+    friction = os.environ.get("FRICTION")
+    rough = f'[[contact]]\nbodies = "all"\nfriction = {friction}\n'
     text = WALL.format(
-        count=count, courses=courses, bricks=bricks, last=width - 2, last_half=width - 1, frame=frame, ties=ties
+        count=count,
+        courses=courses,
+        bricks=bricks,
+        last=width - 2,
+        last_half=width - 1,
+        frame=frame,
+        ties=ties,
+        says=ROUGH if friction else SMOOTH,
+        contact=rough if friction else '[interface]\ndefault = "contact"\n',
     )
     Path(out, "wall.toml").write_text(text)
-    for name, list_of in [("wall_bricks.txt", whole), ("wall_halves.txt", halves)]:
-        lines = "".join(f"{x} {y}\n" for x, y in list_of)
-        Path(out, name).write_text("# x y of the lower left corner\n" + lines)
+    table(out, "wall_bricks.txt", whole)
+    table(out, "wall_halves.txt", halves)
     return f"{count} bricks and a frame of {len(parts)}"
+
+
+DRYSTONE = """\
+# A dry-stone wall of {count} stones on the ground, under its own weight and a tenth of it sideways, as in an
+# earthquake. Nothing but friction holds it: without, every course slides. Written by
+# `scripts/many_bodies.py drystone {courses} {stones}`.
+
+title = "a dry-stone wall of {count} stones"
+physics = "elasticity"
+{parts}
+[[contact]]
+bodies = "all"
+friction = 0.6
+
+[[obstacle]]
+body = "all"
+side = "bottom"
+plane = {{ point = [0, 0], normal = [0, 1] }}
+distance = 0.1                # the ground, for the lowest course
+friction = 0.6
+
+[options]
+fetifeti_ksp_rtol = 1e-8
+"""
+
+STONES = """
+[[body]]
+name = "{name}"
+size = [{width}, 1]
+elements = [{nx}, 2]
+young = 1e4
+poisson = 0.2
+load = [0.1, -1]
+instances = "drystone_{table}.txt"
+"""
+
+
+def drystone(courses, stones, out):
+    whole, halves = bond(courses, lambda y: [(0, 2 * stones)])
+    kinds = [("stone", "stones", 2, whole), ("half", "halves", 1, halves)]
+    parts = "".join(STONES.format(name=n, table=t, width=w, nx=2 * w) for n, t, w, _ in kinds)
+    count = len(whole) + len(halves)
+    text = DRYSTONE.format(count=count, courses=courses, stones=stones, parts=parts)
+    Path(out, "drystone.toml").write_text(text)
+    for _, name, _, places in kinds:
+        table(out, f"drystone_{name}.txt", places)
+    return f"{count} stones"
+
+
+ARCH = """\
+# A semicircular arch of {count} voussoirs, {percent} % of its radius thick, under its own weight: friction passes on
+# what the thrust has along the joints. Written by `scripts/many_bodies.py arch {count} {percent}`.
+
+title = "an arch of {count} voussoirs"
+physics = "elasticity"
+
+[[body]]
+name = "voussoir"
+shape = {{ annulus = {{ inner = {inner}, outer = {outer}, from = {low}, to = {high} }} }}
+elements = [4, 2]
+young = 1e6
+poisson = 0.2
+load = [0, -1]
+instances = "arch_stones.txt"
+
+[[contact]]
+bodies = "all"
+friction = 0.6
+
+{grounds}[options]
+fetifeti_ksp_rtol = 1e-8
+"""
+
+GROUND = """[[obstacle]]
+body = "voussoir[{k}]"
+side = "{side}"
+plane = {{ point = [0, 0], normal = [0, 1] }}
+friction = 0.6
+
+"""
+
+
+def arch(count, percent, out):
+    half, thick = 90 / count, percent / 10  # of a radius of 10
+    grounds = "".join(GROUND.format(k=k, side=side) for k, side in [(0, "bottom"), (count - 1, "top")])
+    text = ARCH.format(
+        count=count,
+        percent=percent,
+        inner=10 - thick / 2,
+        outer=10 + thick / 2,
+        low=-half,
+        high=half,
+        grounds=grounds,
+    )
+    Path(out, "arch.toml").write_text(text)
+    lines = "".join(f"0 0 {(2 * k + 1) * half:.15g}\n" for k in range(count))
+    Path(out, "arch_stones.txt").write_text("# x y and angle, from the right springing on\n" + lines)
+    return f"{count} voussoirs"
 
 
 SPHERES = """# {count} spheres in a box, in contact without friction, under their own weight: layers of {row} x {row}
@@ -258,12 +384,15 @@ def spheres(row, layers, out):
     return f"{len(places)} spheres of {len(nodes)} nodes"
 
 
+KINDS = {"wall": wall, "drystone": drystone, "arch": arch, "spheres": spheres}
+
+
 def main():
-    if len(sys.argv) != 5 or sys.argv[1] not in ["wall", "spheres"]:
+    if len(sys.argv) != 5 or sys.argv[1] not in KINDS:
         sys.exit(__doc__)
     kind, first, second, out = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
     Path(out).mkdir(parents=True, exist_ok=True)
-    done = {"wall": wall, "spheres": spheres}[kind](first, second, out)
+    done = KINDS[kind](first, second, out)
     print(f"{out}/{kind}.toml: {done}")
 
 

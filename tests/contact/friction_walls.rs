@@ -25,7 +25,7 @@ const ACCURACY: f64 = 1e-6;
 const RTOL: f64 = 1e-9;
 
 /// Floating bodies in a box without a lid, pressed down and sideways from above; the nodes of layers match, or do not.
-fn scene(id: u64) -> String {
+pub(super) fn scene(id: u64) -> String {
     let mut rng = Rng::new(90_000 + id);
     let mut pick = |list: &[f64]| list[(rng.unit() * list.len() as f64) as usize % list.len()];
     let solid = pick(&[0.0, 0.0, 1.0]) > 0.0;

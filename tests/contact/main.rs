@@ -5,9 +5,12 @@ mod support;
 
 mod bodies;
 mod certified;
+mod conic;
 mod elastic;
 mod failed;
 mod friction;
+mod friction_conic;
+mod friction_gallery;
 mod friction_reference;
 mod friction_renewed;
 mod friction_walls;
