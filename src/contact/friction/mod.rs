@@ -9,8 +9,8 @@
 //! factored again, and the operators stay symmetric. Normal rows follow the rule of the active set in the same step.
 
 mod judged;
-mod mixing;
-mod node;
+pub mod mixing;
+pub mod node;
 mod pose;
 pub(super) mod tuning;
 
