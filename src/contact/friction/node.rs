@@ -67,8 +67,8 @@ pub struct Change {
 
 impl Node {
     /// The node of these given rows, in the state that multipliers and a set say: a row that does not hold and has a
-    /// multiplier slips. `compliance` is that of the nodes, by owned row; `beside` is the number of rows of the node, its
-    /// own and those of other contacts.
+    /// multiplier slips. `compliance` is that of the nodes, by owned row; `beside` is the number of rows of the node,
+    /// its own and those of other contacts.
     pub fn new(
         given: &FrictionNode,
         place: impl Fn(usize) -> usize,
