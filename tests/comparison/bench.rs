@@ -318,6 +318,7 @@ fn named_cases_are_listed_and_run_small() {
             "rod-4",
             "rod-10",
             "rod-contact-4",
+            "rod-contact-4-friction",
             "rod-contact-10",
             "blocks-contact-4",
             "blocks-contact-4-mortar",

@@ -7,6 +7,7 @@ mod bench;
 mod contact;
 mod elastic;
 mod equations;
+mod friction;
 mod mortar;
 mod scalar;
 mod signals;

@@ -4,6 +4,7 @@ use super::node::{self, Node};
 use super::tuning::FrictionTuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
+use crate::substructures::FrictionNode;
 use crate::Result;
 use parallel::exchange::max_all;
 
@@ -19,7 +20,10 @@ pub(super) fn nodes(
     let compliance = dual.stiffness.compliance_of_rows(&method.problem)?;
     let place = places(jump);
     let at = (lambda, active);
-    let node = |given| Node::new(jump, given, |r| place[r], at, &compliance, tuning);
+    let node = |given: &FrictionNode| {
+        let beside = jump.rows_beside(place[given.normal]);
+        Node::new(given, |r| place[r], beside, at, &compliance, tuning)
+    };
     Ok(method.problem.friction.iter().map(node).collect())
 }
 

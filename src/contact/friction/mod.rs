@@ -10,9 +10,9 @@
 
 mod judged;
 mod lagrangian;
-mod mixing;
+pub mod mixing;
 mod newton;
-mod node;
+pub mod node;
 mod pose;
 pub(super) mod tuning;
 

@@ -8,7 +8,6 @@
 //! is across d. It is a spring of compliance |w|/g, by which the force follows the direction of the slip.
 
 use super::tuning::FrictionTuning;
-use crate::feti::jump::operator::Jump;
 use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
 
@@ -49,8 +48,11 @@ pub struct Node {
 
 /// The solution of a step on the owned rows: multipliers, gaps B u − C λ − c, and which rows are to hold.
 pub struct Step<'s> {
+    /// λ.
     pub lambda: &'s [f64],
+    /// The gaps.
     pub gaps: &'s [f64],
+    /// Whether each row is to hold.
     pub active: &'s [bool],
     /// Slips below this are rounding, or residuals of the step.
     pub nothing: f64,
@@ -67,11 +69,12 @@ pub struct Change {
 
 impl Node {
     /// The node of these given rows, in the state that multipliers and a set say: a row that does not hold and has a
-    /// multiplier slips. `compliance` is that of the nodes, by owned row.
+    /// multiplier slips. `compliance` is that of the nodes, by owned row; `beside` is the number of rows of the node,
+    /// its own and those of other contacts.
     pub fn new(
-        jump: &Jump,
         given: &FrictionNode,
         place: impl Fn(usize) -> usize,
+        beside: usize,
         (lambda, active): (&[f64], &[bool]),
         compliance: &[f64],
         tuning: &FrictionTuning,
@@ -81,7 +84,6 @@ impl Node {
         for (f, &t) in force.iter_mut().zip(&tangential) {
             *f = lambda[t];
         }
-        debug_assert!(tangential.iter().all(|&t| jump.law[t].is_friction()));
         let sticks = tangential.iter().all(|&t| active[t]);
         let size = length(force);
         let state = match size {
@@ -96,7 +98,7 @@ impl Node {
             tangential,
             bound: given.bound,
             stiffness: if soft > 0.0 { 1.0 / soft } else { 0.0 },
-            springs: match jump.rows_beside(place(given.normal)) {
+            springs: match beside {
                 ..=3 => [tuning.rigid, tuning.soft],
                 _ => [tuning.rigid, tuning.soft_at_edges],
             },

@@ -1,5 +1,6 @@
 //! The types of a loop around the assembled problem: tolerances, steps, its end.
 
+use super::exerted::ExertedForces;
 use super::refine::Refiner;
 use base::Result;
 use fetifeti::inside::driver::Course;
@@ -98,7 +99,7 @@ impl Course for AssembledCourse {
 }
 
 /// The next set.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SetState {
     /// Whether each row is to hold.
     pub active: Vec<bool>,
@@ -108,6 +109,8 @@ pub struct SetState {
     pub trouble: Option<&'static str>,
     /// The wrong rows of the set before, where this set is to be tried before that method is asked.
     pub fewest: Option<usize>,
+    /// Forces of rows that do not hold.
+    pub exerted: ExertedForces,
 }
 
 /// Numbers of one step.

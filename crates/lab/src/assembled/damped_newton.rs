@@ -193,14 +193,14 @@ impl<'a> DampedNewton<'a> {
         let (ksp, seconds) = timed(&self.session, || {
             let ksp = solvers()?;
             ksp.set_reuse_preconditioner(false)?;
-            self.reduced.update(&self.free)?;
-            self.reduced.add(&self.entries(&springs, s))?;
+            self.reduced
+                .update(&self.free, &self.entries(&springs, s))?;
             ksp.set_operators(a, a)?;
             ksp.setup()?;
             Ok(ksp)
         })?;
         out.setup += seconds;
-        let b = self.reduced.rhs(&self.free)?;
+        let b = self.reduced.rhs(&self.free, &[])?;
         let loads = self.reduced.trace.get(comm, &b)?;
         self.reduced
             .trace

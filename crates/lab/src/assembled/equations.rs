@@ -3,6 +3,7 @@
 use super::course::{
     ActiveSetEnd, OuterCertificate, OuterEnd, OuterSolve, OuterStep, SetState, Solvers, Tolerances,
 };
+use super::exerted::ExertedForces;
 use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
 use super::judged::Judged;
 use super::reduced::Reduced;
@@ -11,6 +12,9 @@ use super::rows::Inequalities;
 use base::Result;
 use parallel::meter::timed;
 use petsc::{Ksp, Session, Vec as PetscVec};
+
+/// A spring counts as changed since the preconditioner was built if it is stiffer or softer by more than this.
+const STIFFER: f64 = 2.0;
 
 /// Some rows are kept active only so that no body comes loose. Such a row may pull by this part of the largest
 /// multiplier: then no force drives the body away.
@@ -25,6 +29,23 @@ pub(super) struct Manner {
     pub single: bool,
     /// The signs that multipliers of dependent rows are to have.
     pub signs: MultiplierSigns,
+    /// Factor on the reduction of the residual while the set changes.
+    pub finer: f64,
+    /// Factor on the tolerance.
+    pub digits: f64,
+}
+
+impl Manner {
+    /// A solve to the tolerance with these signs.
+    pub const fn to_the_end(signs: MultiplierSigns) -> Manner {
+        Manner {
+            exact: true,
+            single: false,
+            signs,
+            finer: 1.0,
+            digits: 1.0,
+        }
+    }
 }
 
 /// The solution of a set, and what follows from it.
@@ -66,8 +87,7 @@ impl Solved {
         SetState {
             priority: self.judged.priority(&self.active, &self.next),
             active: self.next,
-            trouble: None,
-            fewest: None,
+            ..SetState::default()
         }
     }
 }
@@ -83,8 +103,8 @@ pub(super) struct Equations<'a> {
     /// The present u, the start of the next solve.
     u: PetscVec,
     ksp: Option<Ksp>,
-    /// The active set for which the preconditioner was built.
-    built: Vec<bool>,
+    /// The active set for which the preconditioner was built, and its springs.
+    built: (Vec<bool>, ExertedForces),
     /// The groups of the last set, where it is solved again.
     groups: Option<ActiveGroups>,
     /// Seconds for matrices and preconditioners.
@@ -114,7 +134,7 @@ impl<'a> Equations<'a> {
             tolerances,
             solve,
             ksp: None,
-            built: Vec::new(),
+            built: Default::default(),
             groups: None,
             setup: 0.0,
             begun: false,
@@ -135,6 +155,11 @@ impl<'a> Equations<'a> {
         matches!(self.solve, OuterSolve::Refined(_))
     }
 
+    /// The tolerance of the residual, relative to the load.
+    pub fn rtol(&self) -> f64 {
+        self.tolerances.rtol
+    }
+
     /// The next set is that of `solved` once more.
     pub fn again(&mut self, solved: Solved) {
         self.groups = Some(solved.groups);
@@ -145,7 +170,7 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// PETSc's.
     pub fn restart(&mut self, u: &PetscVec) -> Result<()> {
-        self.built.clear();
+        self.built.0.clear();
         self.u.copy_from(u)
     }
 
@@ -157,20 +182,24 @@ impl<'a> Equations<'a> {
         let (rows, reduced) = (self.rows, self.reduced);
         let active = &mut state.active;
         let groups = ActiveGroups::new(rows, active, &state.priority);
-        let changed = active.iter().zip(&self.built);
-        let changed = changed.filter(|(a, b)| a != b).count();
+        let (before, springs) = &self.built;
+        let changed = active.iter().zip(before).filter(|(a, b)| a != b).count()
+            + state.exerted.rows_changed(springs, STIFFER);
         let stale = changed as f64 > self.tolerances.lag * rows.len() as f64;
-        let build = self.built.is_empty() || stale;
+        // Where nothing iterates, the preconditioner is the solver.
+        let other = self.tolerances.inner == 0.0 && !state.exerted.is_as_stiff(springs);
+        let build = before.is_empty() || stale || other;
         if build {
-            self.built.clone_from(active);
+            self.built = (active.clone(), state.exerted.clone());
         }
+        let entries = state.exerted.entries(rows, &groups);
         let prepare = || {
             if build && self.begun {
                 self.ksp = Some((self.solvers)()?);
             }
             let ksp = self.ksp.as_ref().expect("the loop has begun");
             ksp.set_reuse_preconditioner(!build)?;
-            reduced.update(&groups)?;
+            reduced.update(&groups, &entries)?;
             ksp.set_operators(&reduced.a, &reduced.a)?;
             ksp.setup()
         };
@@ -188,14 +217,15 @@ impl<'a> Equations<'a> {
         let (rows, reduced, comm) = (self.rows, self.reduced, self.session.comm());
         let (u, active) = (&self.u, &state.active);
         let ksp = self.ksp.as_ref().expect("the loop has begun");
-        let b = reduced.rhs(&groups)?;
+        let exerted = |w: &[f64]| state.exerted.forces(rows, w);
+        let b = reduced.rhs(&groups, &exerted(&groups.offset))?;
         let v = reduced.start(&groups, u)?;
         let reference = reduced.reference(&b)?;
-        let target = self.tolerances.rtol * reference;
+        let target = manner.digits * self.tolerances.rtol * reference;
         let (r, d) = (reduced.vector()?, reduced.vector()?);
         let mut residual = residual_of(reduced, &b, &v, &r)?;
         let stop = match manner.exact {
-            false => target.max(self.tolerances.inner * residual),
+            false => target.max(manner.finer * self.tolerances.inner * residual),
             true => target,
         };
         let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
@@ -205,7 +235,7 @@ impl<'a> Equations<'a> {
             iterations: 0,
         };
         if let OuterSolve::Refined(refiner) = self.solve {
-            let refined = refiner.refine(&groups, ksp, &v)?;
+            let refined = refiner.refine(&groups, ksp, &v, &exerted)?;
             (residual, correction) = (refined.residual, refined.correction);
             (reason, failed) = refined.reason;
             step.iterations += refined.rounds;
@@ -228,20 +258,35 @@ impl<'a> Equations<'a> {
         reduced.trace.spread(comm, &groups, &v, u)?;
 
         let at = reduced.trace.get(comm, u)?;
-        let forces = match self.solve {
+        let mut forces = match self.solve {
             OuterSolve::Refined(refiner) => refiner.forces(u)?,
             _ => reduced.forces(u)?,
         };
-        let lambda = multipliers(rows, active, &forces, manner.signs);
+        let mut gaps = rows.gaps(&at);
+        let others = exerted(&at);
+        forces.iter_mut().zip(others).for_each(|(f, y)| *f -= y);
+        let mut lambda = multipliers(rows, &rows.rigid(active), &forces, manner.signs);
+        if rows.has_laws() {
+            let others = state.exerted.multipliers(&gaps);
+            lambda.iter_mut().zip(others).for_each(|(l, y)| *l += y);
+            let soft = rows.compliance.iter().zip(&lambda);
+            gaps.iter_mut()
+                .zip(soft)
+                .for_each(|(gap, (c, l))| *gap -= c * l);
+        }
         let sizes = (u.norm_inf()?, reference);
-        let judged = Judged::new(rows, active, lambda, rows.gaps(&at), sizes);
+        let judged = Judged::new(rows, active, lambda, gaps, sizes);
         let certificate = judged.certificate(correction);
         let relative = over(residual, reference);
         let mut next = judged.next.clone();
         if manner.single {
             judged.keep_worst(active, &mut next);
         }
-        let restored = rows.restore(&mut next, &judged.score);
+        // Where there is friction, what holds bodies depends on the states of nodes.
+        let restored = match rows.has_laws() {
+            true => Vec::new(),
+            false => rows.restore(&mut next, &judged.score),
+        };
         let met = match self.solve {
             OuterSolve::Refined(_) => certificate.holds(),
             _ => relative <= self.tolerances.rtol,

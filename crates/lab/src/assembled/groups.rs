@@ -31,15 +31,15 @@ pub struct ActiveGroups {
 }
 
 impl ActiveGroups {
-    /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is
-    /// taken out of `active`.
+    /// Joins the unknowns of the active rows that do not give way, in the order of `priority`. A row that contradicts
+    /// those before it is taken out of `active`.
     pub fn new(rows: &Inequalities, active: &mut [bool], priority: &[usize]) -> ActiveGroups {
         let largest = rows.rows.iter().fold(0.0f64, |a, r| a.max(r.gap.abs()));
         let n = rows.ground();
         let mut sets = Potentials::new(n + 1);
         for &r in priority {
             let row = &rows.rows[r];
-            if active[r] {
+            if active[r] && rows.softness(r) == 0.0 {
                 let misses = sets.join(row.plus, row.minus, row.gap);
                 active[r] = misses.is_none_or(|by| by.abs() <= SAME * largest);
             }
@@ -127,6 +127,23 @@ pub(super) fn components(rows: &Inequalities, active: &[bool]) -> Vec<Vec<usize>
         of_set.entry(sets.find(end).0).or_default().push(k);
     }
     of_set.into_values().collect()
+}
+
+/// The active rows that depend on each other, with all that unknowns connect with them: their multipliers are not the
+/// only ones.
+pub fn unclear(rows: &Inequalities, active: &[bool]) -> Vec<bool> {
+    let mut out = vec![false; rows.len()];
+    for members in components(rows, active) {
+        let mut sets = Potentials::new(rows.ground() + 1);
+        let mut closes = |&r: &usize| {
+            let row = rows.rows[r];
+            sets.join(row.plus, row.minus, 0.0).is_some()
+        };
+        if members.iter().any(&mut closes) {
+            members.iter().for_each(|&r| out[r] = true);
+        }
+    }
+    out
 }
 
 /// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other

@@ -24,6 +24,8 @@ pub(super) struct Judged {
     pub largest: [f64; 2],
     /// Multipliers below this are rounding beside the loads.
     none: f64,
+    /// Whether each row is an inequality.
+    bounds: Vec<bool>,
 }
 
 impl Judged {
@@ -43,10 +45,11 @@ impl Judged {
             score: vec![0.0; rows.len()],
             largest: [lambda_max, u_max],
             none: ROUNDING * load,
+            bounds: rows.tangential().iter().map(|t| !t).collect(),
             lambda,
             gaps,
         };
-        for (r, &on) in active.iter().enumerate() {
+        for (r, &on) in active.iter().enumerate().filter(|(r, _)| out.bounds[*r]) {
             let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
             out.score[r] = l + gap;
             if on && l < -ROUNDING && out.lambda[r] < -out.none {
@@ -58,9 +61,12 @@ impl Judged {
         out
     }
 
-    /// The certificate, given the last correction of u.
+    /// The certificate, given the last correction of u; rows of friction have none.
     pub fn certificate(&self, correction: f64) -> OuterCertificate {
-        let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
+        let most = |list: &[f64], sign: f64| {
+            let each = list.iter().zip(&self.bounds).filter(|(_, bounds)| **bounds);
+            each.fold(0.0f64, |a, (v, _)| a.max(sign * v))
+        };
         let pull = Some(most(&self.lambda, -1.0)).filter(|pull| *pull > self.none);
         OuterCertificate {
             correction,

@@ -4,13 +4,15 @@
 //!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,  Bᵀ λ = f − K u,  A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
 //! ```
 //!
-//! There are two strategies: sets that follow from each other ([`sets`](super::sets)), and those of a method that
-//! converges, to which it hands over ([`trials`](super::trials)).
+//! There are three strategies: sets that follow from each other ([`sets`](super::sets)), and those of a method that
+//! converges, to which it hands over ([`trials`](super::trials)); where there is friction or soft contact, states of
+//! nodes that follow from each other ([`friction`](super::friction)).
 
 use std::cell::RefCell;
 
 use super::course::{ActiveSetEnd, AssembledCourse, OuterSolve, SetState, Solvers, Tolerances};
 use super::equations::Equations;
+use super::friction::StickAndSlip;
 use super::reduced::Reduced;
 use super::rows::Inequalities;
 use super::sets::WanderingSets;
@@ -45,10 +47,13 @@ impl InnerProblem for AssembledRows<'_> {
                         .given
                         .map_or_else(|| self.rows.initial.clone(), <[bool]>::to_vec),
                     priority: (0..self.rows.len()).collect(),
-                    trouble: None,
-                    fewest: None,
+                    ..SetState::default()
                 };
                 let is_given = self.given.is_some();
+                if self.rows.has_laws() && !is_given {
+                    let inner = (self.rows, self.reduced);
+                    return Ok(Box::new(StickAndSlip::new(inner, &self.equations, state)));
+                }
                 Box::new(WanderingSets::new(&self.equations, state, is_given))
             }
         })

@@ -5,6 +5,8 @@ use super::rows::Inequalities;
 use super::system::{AssembledSystem, MatrixFormat};
 use super::unknowns::{Trace, Unknowns};
 use base::Result;
+use fetifeti::inside::node::{Node, Step};
+use fetifeti::settings::FrictionTuning;
 use petsc::{Session, Vec as PetscVec};
 use scene::Scene;
 
@@ -50,7 +52,76 @@ impl AssembledProblem {
         ActiveGroups::new(&self.rows, active, &in_order)
     }
 
-    /// ‖Tᵀ(f − K u)‖₂ relative to the load: the part of the residual that multipliers of the active rows cannot
+    /// The rows that bear forces where these are active: the active ones, and the tangential rows of nodes with
+    /// friction that touch, whether or not they stick; and the groups of all these. A force of friction or of a spring
+    /// is then what the equations say, whatever its law.
+    pub fn bearing(&self, active: &[bool]) -> (Vec<bool>, ActiveGroups) {
+        let mut bears = active.to_vec();
+        for node in &self.rows.friction {
+            let touches = active[node.normal] || node.bound.acts_apart();
+            for &t in &node.tangential {
+                let row = self.rows.rows[t];
+                bears[t] = touches && row.plus != row.minus;
+            }
+        }
+        if !self.rows.has_laws() {
+            return (bears, self.groups(&mut active.to_vec()));
+        }
+        let joined = Inequalities {
+            compliance: Vec::new(),
+            ..self.rows.clone()
+        };
+        let in_order: Vec<usize> = (0..self.rows.len()).collect();
+        let groups = ActiveGroups::new(&joined, &mut bears.clone(), &in_order);
+        (bears, groups)
+    }
+
+    /// How far these multipliers are from the laws of friction and of soft contact, as a force: the largest
+    /// |λ_t − Π_g(λ_t + k w)| of a node, with the projection Π_g onto the disc of radius g, and the largest
+    /// |λ_n − (B u − c)/C| of a soft row. `diagonal` is that of K at the unknowns in rows. Rows in `unclear` do not
+    /// count.
+    pub fn law_error(
+        &self,
+        (lambda, gaps, active): (&[f64], &[f64], &[bool]),
+        diagonal: &[f64],
+        unclear: &[bool],
+        nothing: f64,
+    ) -> f64 {
+        let rows = &self.rows;
+        let each = || (0..rows.len()).map(|r| (r, rows.scale_of(r)));
+        let force: Vec<f64> = each().map(|(r, s)| lambda[r] / s).collect();
+        let give: Vec<f64> = each()
+            .map(|(r, s)| s * rows.softness(r) * lambda[r])
+            .collect();
+        let slip: Vec<f64> = each().map(|(r, s)| s * gaps[r] - give[r]).collect();
+        let step = Step {
+            lambda: &force,
+            gaps: &slip,
+            active,
+            nothing,
+        };
+        let (compliance, beside, tuning) =
+            (rows.give(diagonal), rows.beside(), FrictionTuning::DEFAULT);
+        let mut most = 0.0f64;
+        for node in &rows.friction {
+            let mut own = node.tangential.iter().chain([&node.normal]);
+            if own.any(|&r| unclear[r]) {
+                continue;
+            }
+            let at = (&force[..], active);
+            let node = Node::new(node, |r| r, beside[node.normal], at, &compliance, &tuning);
+            most = most.max(node.error(&step));
+        }
+        let tangential = rows.tangential();
+        let soft =
+            |&r: &usize| rows.softness(r) > 0.0 && active[r] && !tangential[r] && !unclear[r];
+        for r in (0..rows.len()).filter(soft) {
+            most = most.max((lambda[r] - gaps[r] / rows.softness(r)).abs() / rows.scale_of(r));
+        }
+        most
+    }
+
+    /// ‖Tᵀ(f − K u)‖₂ relative to the load: the part of the residual that multipliers of the rows in `groups` cannot
     /// balance. Collective.
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 //! pattern has room for all sets, so that a direct solver analyses it once.
 
 use mpi::topology::SimpleCommunicator;
+use std::collections::BTreeMap;
 
 use super::groups::ActiveGroups;
 use super::near::NearKernel;
@@ -126,11 +127,11 @@ impl Reduced {
         self.session.comm()
     }
 
-    /// Puts Tᵀ K T into the matrix. Collective.
+    /// Puts Tᵀ K T into the matrix, with further entries at the lowest unknowns of groups. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn update(&self, groups: &ActiveGroups) -> Result<()> {
+    pub fn update(&self, groups: &ActiveGroups, entries: &[(usize, usize, f64)]) -> Result<()> {
         let mine: Vec<i32> = self.touched.iter().map(|(_, row)| row.row).collect();
         self.a.zero_rows(&mine)?;
         // The lowest unknown of the group of this one.
@@ -151,7 +152,7 @@ impl Reduced {
                 .unzip();
             self.a.add_values(&[to], &cols, &vals)?;
         }
-        self.a.assemble()?;
+        self.add(entries)?;
         // The row of an unknown that is not the lowest of its group has only its diagonal.
         self.kernel.attach_where(&self.a, |x| {
             let free = |k: usize, v: f64| if groups.is_free(k) { v } else { 0.0 };
@@ -161,11 +162,9 @@ impl Reduced {
         })
     }
 
-    /// Adds entries (k, l, value) to the matrix, where k and l are indices of unknowns that rows may join. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn add(&self, entries: &[(usize, usize, f64)]) -> Result<()> {
+    /// Adds entries (k, l, value) to the matrix, where k and l are indices of unknowns that rows may join, and sends
+    /// all that was added to its place. Collective.
+    fn add(&self, entries: &[(usize, usize, f64)]) -> Result<()> {
         let mut mine = vec![false; self.unknowns.len()];
         self.trace.mine().iter().for_each(|&(k, _)| mine[k] = true);
         for &(k, l, value) in entries.iter().filter(|(k, ..)| mine[*k]) {
@@ -192,11 +191,11 @@ impl Reduced {
         !self.kernel.is_empty()
     }
 
-    /// Tᵀ(f − K u₀). Collective.
+    /// Tᵀ(f − K u₀ − y), where y are forces at the unknowns in rows. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn rhs(&self, groups: &ActiveGroups) -> Result<PetscVec> {
+    pub fn rhs(&self, groups: &ActiveGroups, forces: &[f64]) -> Result<PetscVec> {
         let b = self.vector()?;
         b.copy_from(&self.f)?;
         let mut led = vec![0.0; self.unknowns.len()];
@@ -216,6 +215,7 @@ impl Reduced {
             }
         }
         sum_all(self.comm(), &mut led);
+        led.iter_mut().zip(forces).for_each(|(b, y)| *b -= y);
         self.trace.set(&b, &groups.fold(&led))?;
         Ok(b)
     }
@@ -278,11 +278,13 @@ fn pattern(
     let partners = rows.lower_partners();
     let room = Room::new(session.comm(), &partners, trace, lengths);
     let (n, range) = (system.a.size()?.0, system.a.ownership_range()?);
+    let couples = couples(rows, &partners);
     let mut d: Vec<i32> = lengths.iter().map(|r| r[0]).collect();
     let mut o: Vec<i32> = lengths.iter().map(|r| r[1]).collect();
     for (k, row) in touched {
         let i = row.row as usize - range.start;
-        let most = room.of(*k, row.cols.len());
+        let springs = k.map_or(0, |k| couples.get(&k).map_or(0, Vec::len));
+        let most = room.of(*k, row.cols.len()) + springs;
         d[i] = most.min(range.len()) as i32;
         o[i] = most.min(n - range.len()) as i32;
     }
@@ -308,6 +310,15 @@ fn pattern(
             None => a.add_values(&[row.row], &cols, &zeros)?,
         }
     }
+    for &(k, _) in trace.mine() {
+        let cols: Vec<i32> = couples
+            .get(&k)
+            .into_iter()
+            .flatten()
+            .map(|&l| unknowns[l])
+            .collect();
+        a.add_values(&[unknowns[k]], &cols, &vec![0.0; cols.len()])?;
+    }
     let mut next = touched.iter().map(|(_, row)| row.row).peekable();
     for row in range {
         if next.next_if_eq(&(row as i32)).is_none() {
@@ -318,6 +329,33 @@ fn pattern(
     a.assemble()?;
     a.set_flag(MatFlag::Spd)?;
     Ok(a)
+}
+
+/// The unknowns that springs across slips couple with each one, which the matrix may leave apart.
+fn couples(rows: &Inequalities, partners: &[Vec<usize>]) -> BTreeMap<usize, Vec<usize>> {
+    let mut out: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for node in rows
+        .friction
+        .iter()
+        .filter(|node| node.tangential.len() == 2)
+    {
+        let ends = node
+            .tangential
+            .iter()
+            .flat_map(|&t| [rows.rows[t].plus, rows.rows[t].minus]);
+        let ends = ends.filter(|&end| end < rows.ground());
+        let mut all: Vec<usize> = ends.flat_map(|end| partners[end].iter().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        for &k in &all {
+            out.entry(k).or_default().extend(&all);
+        }
+    }
+    for list in out.values_mut() {
+        list.sort_unstable();
+        list.dedup();
+    }
+    out
 }
 
 /// Bounds for the number of entries of a row that changes.

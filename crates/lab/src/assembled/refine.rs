@@ -123,11 +123,17 @@ impl<'a> Refiner<'a> {
         Ok(high.iter().zip(&low).map(|(h, l)| h + l).collect())
     }
 
-    /// Refines v; `ksp` solves with Tᵀ K T. Collective.
+    /// Refines v; `ksp` solves with Tᵀ K T, and `exerted` are forces at the unknowns in rows, from w there. Collective.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn refine(&self, groups: &ActiveGroups, ksp: &Ksp, v: &PetscVec) -> Result<Refined> {
+    pub fn refine(
+        &self,
+        groups: &ActiveGroups,
+        ksp: &Ksp,
+        v: &PetscVec,
+        exerted: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Result<Refined> {
         let (u, r, d) = (v.duplicate()?, v.duplicate()?, v.duplicate()?);
         let mut out = Refined {
             residual: 0.0,
@@ -138,7 +144,9 @@ impl<'a> Refiner<'a> {
         let (mut least, mut idle) = (f64::INFINITY, 0);
         while out.rounds < ROUNDS {
             self.trace.spread(self.session.comm(), groups, v, &u)?;
-            let [high, low] = self.halves(&u, &r)?;
+            let [mut high, low] = self.halves(&u, &r)?;
+            let at = self.trace.get(self.session.comm(), &u)?;
+            high.iter_mut().zip(exerted(&at)).for_each(|(h, y)| *h -= y);
             // The forces on the two ends of a row cancel: their high and low halves are summed separately.
             let [high, low] = [groups.fold(&high), groups.fold(&low)];
             let both: Vec<f64> = high.iter().zip(&low).map(|(h, l)| h + l).collect();

@@ -129,7 +129,7 @@ impl Strategy<AssembledCourse> for WanderingSets<'_, '_> {
         let manner = Manner {
             exact: self.tight || self.caution != Caution::Loose,
             single: self.caution == Caution::Single,
-            signs: MultiplierSigns::Any,
+            ..Manner::to_the_end(MultiplierSigns::Any)
         };
         let (solved, refined) = {
             let mut equations = self.equations.borrow_mut();

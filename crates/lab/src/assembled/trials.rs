@@ -83,11 +83,7 @@ impl Strategy<AssembledCourse> for Trials<'_, '_> {
                 usize::MAX
             }
         };
-        let manner = Manner {
-            exact: true,
-            single: false,
-            signs: MultiplierSigns::Pushing,
-        };
+        let manner = Manner::to_the_end(MultiplierSigns::Pushing);
         let solved = equations.solved(&mut self.state, manner)?;
         step.systems += solved.step.systems;
         step.iterations += solved.step.iterations;

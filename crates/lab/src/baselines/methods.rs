@@ -98,6 +98,11 @@ impl<'a> Methods<'a> {
         let equations = run
             .baseline
             .is_some_and(|b| b.format == MatrixFormat::Unassembled);
+        if equations && self.layout.scene().has_laws() {
+            let message = "not for this scene: it solves the equations of our active set, which have no forces of \
+                           friction and no springs of soft contact";
+            return Ok(Ran::not(message.to_string()));
+        }
         if equations && self.contact && self.active.is_none() {
             let message = "solves the equations of our active set, and there is none";
             return Ok(Ran::not(message.to_string()));
@@ -270,6 +275,8 @@ pub fn sentence(run: &mut MethodRun, judgement: &Judgement) {
         contact.differ = judgement.differ;
         contact.feasibility = judgement.feasibility;
         contact.min_multiplier = judgement.min_multiplier;
+        contact.law = judgement.law;
+        contact.forces = judgement.forces;
     }
 }
 
@@ -295,6 +302,7 @@ pub fn judged(facts: &mut ComparedScene, scene: &Scene, verdict: &CaseJudgement)
         outer: verdict.steps,
         feasibility: reference.and_then(|r| r.feasibility),
         min_multiplier: reference.and_then(|r| r.min_multiplier),
+        law: reference.and_then(|r| r.law),
         load_steps: scene.n_steps(),
     });
 }

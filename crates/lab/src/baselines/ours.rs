@@ -147,13 +147,14 @@ fn close(
     weight: &PetscVec,
 ) -> Result<f64> {
     let groups = problem.groups(&mut active);
+    let (_, bearing) = problem.bearing(&active);
     let at = |x: &PetscVec| problem.trace.get(session.comm(), x);
     let nearest = groups.nearest(&at(u)?, &at(weight)?);
     problem.trace.set(u, &groups.spread(&nearest))?;
-    problem.stationarity(session, &groups, u)
+    problem.stationarity(session, &bearing, u)
 }
 
-/// The active inequalities of the scene, the same on every rank. Collective.
+/// The active inequalities and the tangential rows that stick, the same on every rank. Collective.
 fn active(
     session: &Session,
     scene: &Scene,
@@ -161,7 +162,7 @@ fn active(
     rows: &Inequalities,
 ) -> Result<Vec<bool>> {
     let provided = rows.provided(&distribution::owner(session, scene)?);
-    let solved = solution.rows();
+    let solved = solution.rows().iter().chain(solution.tangential_rows());
     let held = provided.into_iter().zip(solved).filter(|(_, r)| r.holds());
     let mine: Vec<usize> = held.filter_map(|(k, _)| k).collect();
     Ok(rows.set(&gather_all(session.comm(), &mine).concat()))

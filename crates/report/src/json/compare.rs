@@ -115,6 +115,9 @@ pub struct CompareInequalities {
     pub feasibility: Option<f64>,
     /// Smallest multiplier, relative to the largest; 0 where none pulls.
     pub min_multiplier: Option<f64>,
+    /// With friction or soft contact: the largest distance of a force from its law, relative to the largest multiplier.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<f64>,
     /// Number of load steps of the scene; only the last one is solved.
     pub load_steps: usize,
 }
@@ -133,6 +136,13 @@ pub struct CompareContact {
     pub feasibility: Option<f64>,
     /// Smallest multiplier, relative to the largest; 0 where none pulls.
     pub min_multiplier: Option<f64>,
+    /// With friction or soft contact: the largest distance of a force from its law, relative to the largest multiplier.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<f64>,
+    /// With friction or soft contact: the largest difference of a multiplier from the direct solution, relative to the
+    /// largest one there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forces: Option<f64>,
 }
 
 /// Wall-clock seconds by phase; each is a number, or the spread of several.

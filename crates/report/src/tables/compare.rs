@@ -9,6 +9,7 @@ use crate::json::{CompareInequalities, CompareReport, CompareRow};
 pub fn text(report: &CompareReport) -> String {
     // Outer steps and the active set are shown only where there are inequalities.
     let contact = report.facts.contact.is_some();
+    let laws = report.facts.contact.is_some_and(|c| c.law.is_some());
     let mut notes = String::new();
     let mut note = |r: &CompareRow, text: String| {
         notes += if notes.is_empty() { "\n" } else { "" };
@@ -35,6 +36,11 @@ pub fn text(report: &CompareReport) -> String {
         .numbers("error", |r| scientific(r.run.error))
         .numbers("residual", |r| scientific(r.run.residual))
         .when(contact, |t| t.numbers("set", |r| set(r)))
+        .when(laws, |t| {
+            let of = |r: &CompareRow| r.run.contact.unwrap_or_default();
+            t.numbers("forces", move |r| scientific(of(r).forces))
+                .numbers("law", move |r| scientific(of(r).law))
+        })
         .words("outcome", |r| outcome(&r.run, |text| note(r, text)))
         .table();
     format!(
@@ -79,6 +85,14 @@ fn inequalities(c: &CompareInequalities) -> String {
         scientific(c.feasibility),
         scientific(c.min_multiplier),
     );
+    if let Some(law) = c.law {
+        text += &format!(
+            "Tangential rows count as inequalities that hold where their nodes stick. forces: the largest difference \
+             of a force from the direct\nsolution; law: the largest distance of a force from the laws of friction and \
+             soft contact ({} in the direct solution); both over\nthe largest force.\n",
+            scientific(Some(law))
+        );
+    }
     if c.load_steps > 1 {
         text += &format!(
             "Of {} load steps the last one is solved, alone.\n",
@@ -112,6 +126,8 @@ pub fn csv(rows: &[CompareRow]) -> Table {
         .exact("min_multiplier", |r| {
             r.run.contact.and_then(|c| c.min_multiplier)
         })
+        .exact("force_error", |r| r.run.contact.and_then(|c| c.forces))
+        .exact("law_error", |r| r.run.contact.and_then(|c| c.law))
         .exact("rtol", |r| r.run.rtol)
         .exact("converged", |r| r.run.converged)
         .exact("converged_reason", |r| r.run.converged_reason.as_str())

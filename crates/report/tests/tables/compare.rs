@@ -70,6 +70,7 @@ fn contact_has_columns_of_its_own() {
                 differ,
                 feasibility: Some(0.5),
                 min_multiplier: Some(-0.25),
+                ..CompareContact::default()
             }),
             converged: true,
             converged_reason: "CONVERGED_ITS".into(),

@@ -90,7 +90,7 @@ impl<'a> UnknownLayout<'a> {
         };
         layout.fill();
         let rows = scene.solver_rows(&|_| true);
-        let inequalities: Vec<&Row> = rows.iter().filter(|r| r.law.is_inequality()).collect();
+        let inequalities: Vec<&Row> = rows.iter().filter(|r| r.law.is_decided()).collect();
         for row in &inequalities {
             let form = layout.motions.of_terms(scene, &row.terms);
             layout.all_held.insert(&form, 0.0);

@@ -49,7 +49,7 @@ impl NamedScene {
 }
 
 /// All cases, in the order in which they are run.
-pub const CASES: [NamedScene; 16] = [
+pub const CASES: [NamedScene; 17] = [
     NamedScene {
         name: "poisson-1024",
         description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
@@ -103,25 +103,31 @@ pub const CASES: [NamedScene; 16] = [
         name: "rod-4",
         description: "connecting rod, tied to cap, journal and pin, tetrahedra of 4 nodes, 300,000 unknowns \
                       (quick: 20,000)",
-        scene: |_| unstructured::rod(false, false),
+        scene: |_| unstructured::rod(None, false),
         mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
     },
     NamedScene {
         name: "rod-10",
         description: "the same of tetrahedra of 10 nodes",
-        scene: |_| unstructured::rod(false, true),
+        scene: |_| unstructured::rod(None, true),
         mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
     },
     NamedScene {
         name: "rod-contact-4",
         description: "connecting rod, tied to its cap, in contact with journal and pin, tetrahedra of 4 nodes",
-        scene: |_| unstructured::rod(true, false),
+        scene: |_| unstructured::rod(Some(0.0), false),
+        mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
+    },
+    NamedScene {
+        name: "rod-contact-4-friction",
+        description: "rod-contact-4 with friction, 0.2",
+        scene: |_| unstructured::rod(Some(0.2), false),
         mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
     },
     NamedScene {
         name: "rod-contact-10",
         description: "the same of tetrahedra of 10 nodes",
-        scene: |_| unstructured::rod(true, true),
+        scene: |_| unstructured::rod(Some(0.0), true),
         mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
     },
     NamedScene {

@@ -39,13 +39,13 @@ fn across(quick: bool, elastic: bool) -> usize {
     }
 }
 
-/// A connecting rod and its cap, tied to each other; tied to journal and pin too, or the rod in contact with them.
-/// About 300,000 unknowns, or 20,000.
-pub(super) fn rod(contact: bool, quadratic: bool) -> String {
-    let title = if contact {
-        "in contact with"
-    } else {
-        "tied to"
+/// A connecting rod and its cap, tied to each other; tied to journal and pin too, or the rod in contact with them, with
+/// this coefficient of friction. About 300,000 unknowns, or 20,000.
+pub(super) fn rod(contact: Option<f64>, quadratic: bool) -> String {
+    let title = match contact {
+        None => "tied to",
+        Some(0.0) => "in contact with",
+        Some(_) => "in contact with friction with",
     };
     let nodes = if quadratic { 10 } else { 4 };
     let mut text = format!(
@@ -64,13 +64,16 @@ pub(super) fn rod(contact: bool, quadratic: bool) -> String {
     ] {
         text += &format!("\n[[body]]\nname = \"{name}\"\n{steel}{rest}\n");
     }
-    if contact {
+    if let Some(friction) = contact {
         // The rod is pushed: its own half of the big eye presses on the journal. The cap stays free of it, because
         // other methods cannot have a node in two contacts.
         text +=
             "\n[interface]\ndefault = \"free\"\n\n[[tie]]\nsurfaces = [\"parting\", \"parting\"]\n";
         for other in ["journal", "pin"] {
             text += &format!("\n[[contact]]\nbodies = [\"rod\", \"{other}\"]\n");
+            if friction > 0.0 {
+                text += &format!("friction = {friction}\n");
+            }
         }
     }
     text
