@@ -15,6 +15,7 @@ mod newton;
 pub mod node;
 mod pose;
 pub(super) mod tuning;
+mod waiting;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
@@ -128,8 +129,16 @@ impl<'a> Friction<'a> {
             nothing,
         };
         let (mut flips, mut moves) = ([0.0], [0.0f64]);
-        for node in &mut self.nodes {
-            let change = node.update(&step);
+        let waits = match self.progress.stalled(self.settings.tuning.friction.waits) {
+            true => self.waiting(&step),
+            false => vec![false; self.nodes.len()],
+        };
+        let mut active = self.inner.state.active.clone();
+        for (node, waits) in self.nodes.iter_mut().zip(waits) {
+            let change = node.update(&step, waits);
+            if waits {
+                active[node.normal] = self.inner.state.before[node.normal];
+            }
             flips[0] += f64::from(u8::from(change.flips));
             moves[0] = moves[0].max(change.moves);
         }
@@ -143,6 +152,7 @@ impl<'a> Friction<'a> {
             flips[0] = given_way.sum();
             sum_all(comm, &mut flips);
         }
+        self.inner.state.active = active;
         if flips[0] > 0.0 || !stays {
             self.mixing.restart();
         } else {

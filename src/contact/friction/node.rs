@@ -277,13 +277,34 @@ impl Node {
         (state, g, excess)
     }
 
-    /// Takes the node to the state that follows from a step.
-    pub fn update(&mut self, step: &Step<'_>) -> Change {
+    /// By how much, as a force, the node is beside the state that follows from a step; 0 if that is its own. `touched`
+    /// says whether its normal row held.
+    pub fn wrong(&self, step: &Step<'_>, touched: bool) -> f64 {
+        let (state, g, _) = self.next(step);
+        let [force, slip] = self.tangent(step);
+        let normal = match (touched, step.active[self.normal]) {
+            (true, false) => step.lambda[self.normal].abs(),
+            (false, true) => self.stiffness * step.gaps[self.normal].abs(),
+            _ => 0.0,
+        };
+        let tangential = match (self.state, state) {
+            (NodeState::Stick, NodeState::Slip(_)) => length(force) - g,
+            (NodeState::Slip(_), NodeState::Stick) => self.stiffness * length(slip),
+            _ => 0.0,
+        };
+        normal.max(tangential)
+    }
+
+    /// Takes the node to the state that follows from a step, or to its g alone if it waits.
+    pub fn update(&mut self, step: &Step<'_>, waits: bool) -> Change {
         let before = self.force();
         let slip = self.tangent(step)[1];
-        let (state, g, excess) = self.next(step);
+        let (mut state, g, excess) = self.next(step);
         let kind = std::mem::discriminant(&self.state);
         let flips = kind != std::mem::discriminant(&state);
+        if flips && waits {
+            state = self.state;
+        }
         (self.state, self.g, self.excess) = (state, g, excess);
         self.slipped = match state {
             NodeState::Slip(d) => Some(d[0] * slip[0] + d[1] * slip[1])

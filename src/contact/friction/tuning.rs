@@ -43,6 +43,8 @@ pub struct FrictionTuning {
     pub soft_at_edges: f64,
     /// Springs across slips that are stiffer than nodes by this factor are rigid.
     pub rigid: f64,
+    /// After so many only the node that is most wrong in each contact changes its state.
+    pub waits: usize,
     /// After this many steps without fewer wrong nodes and rows the augmented Lagrangian takes over.
     pub wanders: usize,
     /// Its springs are at first as many times stiffer than the nodes.
@@ -81,7 +83,8 @@ impl FrictionTuning {
         soft: 100.0,
         soft_at_edges: 2.0,
         rigid: 1e-2,
-        wanders: 12,
+        waits: 6,
+        wanders: 20,
         springs: 30.0,
         stiffest: 1e4,
         softest: 1e3,

@@ -27,12 +27,15 @@ fn after(
     [normal, force, slip]: [f64; 3],
     touches: bool,
 ) -> (NodeState, f64, Change) {
-    let change = node.update(&Step {
-        lambda: &[normal, force],
-        gaps: &[0.0, slip],
-        active: &[touches, true],
-        nothing: 1e-3,
-    });
+    let change = node.update(
+        &Step {
+            lambda: &[normal, force],
+            gaps: &[0.0, slip],
+            active: &[touches, true],
+            nothing: 1e-3,
+        },
+        false,
+    );
     (node.state, node.g, change)
 }
 
@@ -125,7 +128,7 @@ fn rows_in_space_are_turned_along_the_slip() {
         active: &[true, false, true],
         nothing: 0.0,
     };
-    let change = node.update(&step);
+    let change = node.update(&step, false);
     assert!(!change.flips);
     let NodeState::Slip(d) = node.state else {
         panic!("{node:?}");

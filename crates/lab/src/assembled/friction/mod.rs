@@ -146,7 +146,7 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
         let (before, force) = (self.bounds(), largest(&lambda));
         let (mut flips, mut moves) = (0, 0.0f64);
         for node in &mut self.nodes {
-            let change = node.update(&step);
+            let change = node.update(&step, false);
             flips += usize::from(change.flips);
             moves = moves.max(change.moves);
         }
