@@ -43,8 +43,11 @@ pub struct FrictionTuning {
     pub soft_at_edges: f64,
     /// Springs across slips that are stiffer than nodes by this factor are rigid.
     pub rigid: f64,
-    /// After so many only the node that is most wrong in each contact changes its state.
+    /// After so many only the nodes that are most wrong in each contact change their states.
     pub waits: usize,
+    /// They are the nodes that are wrong by this much of the worst one. With 1 a front of slip that goes along a contact
+    /// gets a node ahead in each step.
+    pub most_wrong: f64,
     /// After this many steps without fewer wrong nodes and rows the augmented Lagrangian takes over.
     pub wanders: usize,
     /// Its springs are at first as many times stiffer than the nodes.
@@ -83,8 +86,9 @@ impl FrictionTuning {
         soft: 100.0,
         soft_at_edges: 2.0,
         rigid: 1e-2,
-        waits: 6,
-        wanders: 20,
+        waits: 30,
+        most_wrong: 0.3,
+        wanders: 45,
         springs: 30.0,
         stiffest: 1e4,
         softest: 1e3,

@@ -182,3 +182,44 @@ fn soft_springs_across_a_slip_do_not_hold() {
     node.g = 0.0;
     assert_eq!(node.holds(), [false, false]);
 }
+
+/// How wrong a node is counts as a force, and one that waits keeps its state and has the new g.
+#[test]
+fn a_node_that_waits_has_its_state_and_the_new_bound() {
+    let step = |lambda: &'static [f64], gaps: &'static [f64], touches: bool| Step {
+        lambda,
+        gaps,
+        active: if touches {
+            &[true, true]
+        } else {
+            &[false, true]
+        },
+        nothing: 1e-3,
+    };
+    let stuck = node(NodeState::Stick, 0.0);
+    assert_eq!(
+        stuck.wrong(&step(&[2.0, 1.5], &[0.0, 0.0], true), true),
+        0.5
+    );
+    assert_eq!(
+        stuck.wrong(&step(&[2.0, 0.5], &[0.0, 0.0], true), true),
+        0.0
+    );
+    // Normal rows leave with their pull, and enter with what nodes bear over the gap.
+    assert_eq!(
+        stuck.wrong(&step(&[-0.3, 0.0], &[0.0, 0.0], false), true),
+        0.3
+    );
+    let apart = node(NodeState::Apart, 0.0);
+    assert_eq!(
+        apart.wrong(&step(&[0.0, 0.0], &[0.1, 0.0], true), false),
+        0.2
+    );
+    let mut slips = node(RIGHT, 0.5);
+    let back = step(&[2.0, 0.5], &[0.0, -1.0], true);
+    assert_eq!(slips.wrong(&back, true), 2.0);
+    assert!(slips.update(&back, true).flips);
+    assert_eq!((slips.state, slips.g), (RIGHT, 1.0));
+    slips.update(&back, false);
+    assert_eq!(slips.state, NodeState::Stick);
+}
