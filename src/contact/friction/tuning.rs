@@ -45,8 +45,8 @@ pub struct FrictionTuning {
     pub rigid: f64,
     /// After so many only the nodes that are most wrong in each contact change their states.
     pub waits: usize,
-    /// They are the nodes that are wrong by this much of the worst one. With 1 a front of slip that goes along a contact
-    /// gets a node ahead in each step.
+    /// They are the nodes that are wrong by this much of the worst one. With 1 a front of slip that goes along a
+    /// contact gets a node ahead in each step.
     pub most_wrong: f64,
     /// After this many steps without fewer wrong nodes and rows the augmented Lagrangian takes over.
     pub wanders: usize,
