@@ -150,7 +150,7 @@ pub mod error {
 #[doc(hidden)]
 pub mod inside {
     pub use crate::capi::suits as processor_suits;
-    pub use crate::contact::{driver, line_minimum, mixing, node};
+    pub use crate::contact::{driver, line_minimum, node, nodes};
     pub use crate::feti::cost::{forms, sizes::ProblemSizes, variation::JUMPS};
     pub use crate::feti::deflation::watch;
     pub use crate::feti::interface::sharing::DofSharing;

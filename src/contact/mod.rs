@@ -42,7 +42,7 @@ mod strategy;
 mod tuning;
 
 pub use friction::tuning::FrictionTuning;
-pub use friction::{mixing, node};
+pub use friction::{node, nodes};
 pub use piecewise_quadratic::line_minimum;
 pub use settings::{ContactSettings, ContactType};
 pub use tuning::Tuning;

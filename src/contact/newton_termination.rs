@@ -7,7 +7,6 @@ use crate::feti::LinearSolution;
 use crate::status::Status;
 use crate::Result;
 use parallel::exchange::highest;
-use petsc::Stopped;
 
 impl SemismoothNewton<'_> {
     /// Whether the springs give way by no more than the tolerance, and their forces are those of the displacements to
@@ -52,14 +51,9 @@ impl SemismoothNewton<'_> {
         // P_2 belonged to F + C: what follows is done with F.
         let active = self.method.dual().stiffness.jump.active.clone();
         self.method.set_active(&active)?;
-        let last = self.last;
-        let run = KrylovRun {
-            iterations: steps.iter().map(|s| s.iterations).sum(),
-            status,
-            residuals: last.as_ref().map_or(Vec::new(), |r| r.residuals.clone()),
-            estimate: last.and_then(|r| r.estimate),
-            stopped: Stopped::No,
-        };
+        let last = self.last.map(|run| (run.residuals, run.estimate));
+        let iterations = steps.iter().map(|s| s.iterations).sum();
+        let run = KrylovRun::of_loop(iterations, status, last.unwrap_or_default());
         let mut at = self.at;
         at.loads.jumps = None;
         self.method.recover(at, run, seconds)

@@ -96,9 +96,7 @@ impl<'a> SemismoothNewton<'a> {
         if state.reference == 0.0 {
             let existence = Existence::new(method, &dual, settings);
             existence.if_few(&at.loads.kernel)?;
-            existence.if_all_hold(&at.loads.kernel)?;
-            at.begin(&dual)?;
-            state.reference = at.evaluate_projected(&dual)?;
+            state.reference = existence.reference(&mut at)?;
         }
         at.lambda.array_mut()?.copy_from_slice(&state.lambda);
         // Whole minimisations earlier, so that about the same softness gives the same springs.
@@ -327,10 +325,7 @@ impl<'a> SemismoothNewton<'a> {
             tolerance = tolerance.max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control, None)?;
-            run = Some(match run.take() {
-                Some(before) => before.followed_by(more),
-                None => more,
-            });
+            run = Some(more.after(run.take()));
             let here = self.evaluate_point()?;
             length = self.length_to(&here, centred);
             end = Some(here);

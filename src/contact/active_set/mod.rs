@@ -144,10 +144,8 @@ impl<'a> ActiveSet<'a> {
         let all = State::cold(&method.dual().stiffness.jump).active;
         method.set_active(&all)?;
         let dual = method.dual();
-        Existence::new(method, &dual, self.settings).if_all_hold(&self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
-        self.at.begin(&dual)?;
-        self.at.evaluate_projected(&dual)
+        Existence::new(method, &dual, self.settings).reference(&mut self.at)
     }
 
     /// Reduction of the residual while the set changes.
@@ -313,14 +311,8 @@ impl<'a> ActiveSet<'a> {
         if !self.placed {
             self.at.place(&method.dual())?;
         }
-        let (residuals, estimate) = self.last;
-        let run = KrylovRun {
-            iterations: steps.iter().map(|s| s.iterations).sum(),
-            status,
-            residuals,
-            estimate,
-            stopped: Stopped::No,
-        };
+        let iterations = steps.iter().map(|s| s.iterations).sum();
+        let run = KrylovRun::of_loop(iterations, status, self.last);
         method.recover(self.at, run, solve_seconds)
     }
 }

@@ -19,6 +19,7 @@ mod springs;
 
 use super::settings::ContactSettings;
 use super::tuning::Tuning;
+use crate::feti::krylov::residual::Iterate;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::balance::KernelLoad;
 use crate::feti::projector::gram::FEW;
@@ -95,5 +96,16 @@ impl<'a> Existence<'a> {
             self.if_many(load, &vec![0.0; dual.stiffness.jump.n_owned])?;
         }
         held
+    }
+
+    /// ‖Pᵀ r‖ at the λ₀ that follows from the λ of `at`, which tolerances are relative to, where a loop can begin with
+    /// all candidates as equations.
+    ///
+    /// # Errors
+    /// As [`Existence::if_all_hold`]; PETSc's own.
+    pub fn reference(&self, at: &mut Iterate) -> Result<f64> {
+        self.if_all_hold(&at.loads.kernel)?;
+        at.begin(self.dual)?;
+        at.evaluate_projected(self.dual)
     }
 }

@@ -29,7 +29,6 @@ use crate::status::Status;
 use crate::substructures::Law;
 use crate::Result;
 use parallel::exchange::{any, max_all, total};
-use petsc::Stopped;
 
 /// The loop on states that is tried from a minimum.
 struct Trial<'a> {
@@ -92,13 +91,11 @@ impl<'a> FrictionLagrangian<'a> {
         let jump = &dual.stiffness.jump;
         let mut give = dual.stiffness.compliance_of_rows(&method.problem)?;
         let loads = Loads::new(&method.problem, &dual);
-        let mut at = Iterate::new(&dual, Loads::new(&method.problem, &dual))?;
+        let mut at = Iterate::new(&dual, loads.clone())?;
         if state.reference == 0.0 {
             let existence = Existence::new(method, &dual, settings);
             existence.if_few(&at.loads.kernel)?;
-            existence.if_all_hold(&at.loads.kernel)?;
-            at.begin(&dual)?;
-            state.reference = at.evaluate_projected(&dual)?;
+            state.reference = existence.reference(&mut at)?;
         }
         let law = jump.law.clone();
         let n = law.len();
@@ -296,7 +293,7 @@ impl<'a> FrictionLagrangian<'a> {
     fn begin_trial(&mut self) -> Result<()> {
         self.springs.rigid();
         let turns = self.turned.back();
-        self.follow(&turns)?;
+        self.at.turn(&turns)?;
         self.nodes.iter_mut().for_each(Node::turned_back);
         let run = Friction::new(self.method, self.settings, Some(&self.reached()))?;
         self.trial = Some(Trial {
@@ -355,7 +352,7 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
         }
         let (method, state) = (self.method, self.reached());
         let turns = self.turned.back();
-        self.follow(&turns)?;
+        self.at.turn(&turns)?;
         self.springs.rigid();
         let mut given = vec![0.0; self.law.len()];
         for &t in self.nodes.iter().flat_map(|n| &n.tangential) {
@@ -375,14 +372,9 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
         self.at.lambda.array_mut()?.copy_from_slice(&state.lambda);
         self.at.place(&dual)?;
         drop(dual);
-        let last = self.last;
-        let run = KrylovRun {
-            iterations: steps.iter().map(|s| s.iterations).sum(),
-            status,
-            residuals: last.as_ref().map_or(Vec::new(), |r| r.residuals.clone()),
-            estimate: last.and_then(|r| r.estimate),
-            stopped: Stopped::No,
-        };
+        let last = self.last.map(|run| (run.residuals, run.estimate));
+        let iterations = steps.iter().map(|s| s.iterations).sum();
+        let run = KrylovRun::of_loop(iterations, status, last.unwrap_or_default());
         method.recover(self.at, run, seconds)
     }
 }

@@ -10,29 +10,27 @@
 
 mod judged;
 mod lagrangian;
-pub mod mixing;
+mod mixing;
 mod newton;
 pub mod node;
+pub mod nodes;
 mod pose;
 pub(super) mod tuning;
-mod waiting;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
 use super::modes::{CompliantRows, TurnedRows};
 use super::settings::ContactSettings;
-use super::state::{ActiveSetProgress, State, Step};
+use super::state::{State, Step};
 use super::strategy::{Checkpoint, Proposal, Strategy};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
 pub use judged::error;
-use judged::nodes;
 pub use lagrangian::FrictionLagrangian;
-use mixing::Mixing;
-use node::{Node, NodeState};
-use parallel::exchange::{any, max_all, sum_all};
+use nodes::{Changes, Nodes};
+use parallel::exchange::{any, max_all};
 
 /// Whether a problem has friction, or rows that give way. Collective.
 pub fn is_asked_for(method: &LinearMethod) -> bool {
@@ -47,16 +45,12 @@ pub struct Friction<'a> {
     inner: ActiveSet<'a>,
     /// The loads of the problem.
     loads: Loads,
-    nodes: Vec<Node>,
-    mixing: Mixing,
-    progress: ActiveSetProgress,
+    nodes: Nodes,
     /// The factor on the tolerance of the user.
     accuracy: f64,
     /// Springs across slips in space, and rows along them.
     springs: CompliantRows<'a>,
     turned: TurnedRows<'a>,
-    /// Steps in a row after which rows had to be put back.
-    slides: usize,
 }
 
 impl<'a> Friction<'a> {
@@ -68,12 +62,15 @@ impl<'a> Friction<'a> {
     ) -> Result<Friction<'a>> {
         let cold = State::cold(&method.dual().stiffness.jump);
         let state = start.unwrap_or(&cold);
-        let nodes = nodes(
-            method,
-            &settings.tuning.friction,
-            &state.lambda,
-            &state.active,
-        )?;
+        let tuning = &settings.tuning.friction;
+        let nodes = judged::nodes(method, tuning, &state.lambda, &state.active)?;
+        let (rows, dual) = (&method.problem.rows, method.dual());
+        let contact = nodes.iter().map(|node| {
+            let row = dual.stiffness.jump.given(node.normal);
+            rows[row].label.source.code()
+        });
+        let nodes = Nodes::new(nodes.clone(), contact.collect(), *tuning);
+        drop(dual);
         let mut inner = ActiveSet::new(method, settings, start)?;
         let accuracy = inner.state.accuracy;
         // Where sides stood at the end of a load step is known to its tolerance. What sticks there may seem to violate
@@ -82,25 +79,17 @@ impl<'a> Friction<'a> {
             let even = settings.tuning.friction.even * method.ksp.tolerances()?.0;
             inner.open = inner.open.max(even);
         }
-        let loads = Loads::new(&method.problem, &method.dual());
+        let loads = inner.at.loads.clone();
         Ok(Friction {
             method,
             settings,
             inner,
             loads,
             nodes,
-            mixing: Mixing::default(),
-            progress: ActiveSetProgress::default(),
             accuracy,
             springs: CompliantRows::of(method),
             turned: TurnedRows::of(method),
-            slides: 0,
         })
-    }
-
-    /// The bounds g of the nodes that slip; 0 for the others, whose forces do not depend on g.
-    fn bounds(&self) -> Vec<f64> {
-        self.nodes.iter().map(Node::slipping).collect()
     }
 
     /// The size of slips that say nothing: that of jumps which the step has left on rows that hold. Collective.
@@ -115,104 +104,26 @@ impl<'a> Friction<'a> {
         Ok(tuning.friction.nothing * largest[0] + tuning.friction.even * rtol * self.inner.length)
     }
 
-    /// Takes the nodes to the states that follow from the step, in which the normal rows stay or not. Returns the
-    /// number of flips and the largest change of a force over all ranks, relative to the largest force of a row.
-    /// Collective.
-    fn update(&mut self, stays: bool) -> Result<(usize, f64)> {
+    /// Takes the nodes to the states that follow from the step, in which the normal rows stay or not. Collective.
+    fn update(&mut self, stays: bool) -> Result<Changes> {
         let nothing = self.nothing()?;
-        let comm = self.method.session.comm();
-        let (before, force) = (self.bounds(), self.largest_force());
+        let state = &mut self.inner.state;
+        let active = state.active.clone();
         let step = node::Step {
-            lambda: &self.inner.state.lambda,
+            lambda: &state.lambda,
             gaps: &self.inner.gaps,
-            active: &self.inner.state.active,
+            active: &active,
             nothing,
         };
-        let (mut flips, mut moves) = ([0.0], [0.0f64]);
-        let waits = match self.progress.stalled(self.settings.tuning.friction.waits) {
-            true => self.waiting(&step),
-            false => vec![false; self.nodes.len()],
-        };
-        let mut active = self.inner.state.active.clone();
-        for (node, waits) in self.nodes.iter_mut().zip(waits) {
-            let change = node.update(&step, waits);
-            if waits {
-                active[node.normal] = self.inner.state.before[node.normal];
-            }
-            flips[0] += f64::from(u8::from(change.flips));
-            moves[0] = moves[0].max(change.moves);
-        }
-        sum_all(comm, &mut flips);
-        max_all(comm, &mut moves);
-        if flips[0] == 0.0 && stays {
-            let given_way = self
-                .nodes
-                .iter_mut()
-                .filter_map(|n| n.gives_way(&step).then_some(1.0));
-            flips[0] = given_way.sum();
-            sum_all(comm, &mut flips);
-        }
-        self.inner.state.active = active;
-        if flips[0] > 0.0 || !stays {
-            self.mixing.restart();
-        } else {
-            self.mix(before, self.bounds());
-        }
-        Ok((flips[0] as usize, moves[0] / force))
-    }
-
-    /// The bounds that follow from the step for the nodes that slip; 0 for the others.
-    fn following(&self) -> Vec<f64> {
-        let lambda = &self.inner.state.lambda;
-        self.nodes.iter().map(|n| n.following(lambda)).collect()
-    }
-
-    /// The largest change of a force that slipping nodes have yet to make, relative to the largest force of a row.
-    /// Collective.
-    fn unrest(&self) -> f64 {
-        let pairs = self.following().into_iter().zip(self.bounds());
-        let mut moves = [pairs.fold(0.0f64, |a, (next, g)| a.max((next - g).abs()))];
-        max_all(self.method.session.comm(), &mut moves);
-        moves[0] / self.largest_force()
-    }
-
-    /// Gives slipping nodes the forces that follow from the step, and lets all nodes and rows stay in their states.
-    /// Collective.
-    fn renew(&mut self) {
-        let mapped = self.following();
-        self.mix(self.bounds(), mapped);
-        self.inner.state.active.clone_from(&self.inner.state.before);
-        self.inner.tight = false;
-    }
-
-    /// Mixes bounds and those that follow from them. Collective.
-    fn mix(&mut self, before: Vec<f64>, mapped: Vec<f64>) {
-        let (comm, depth) = (
-            self.method.session.comm(),
-            self.settings.tuning.friction.mixed,
-        );
-        let mixed = self.mixing.mix(comm, depth, before, &mapped);
-        for (node, g) in self.nodes.iter_mut().zip(mixed) {
-            node.g = g.max(0.0);
-        }
+        let comm = self.method.session.comm();
+        let rows = (&state.before[..], &mut state.active[..], stays);
+        Ok(self.nodes.update(comm, &step, rows))
     }
 
     /// Whether the step has numbers for all rows: equations without digits may have none. Collective.
     fn is_finite(&self) -> bool {
         let mut numbers = self.inner.state.lambda.iter().chain(&self.inner.gaps);
         !any(self.method.session.comm(), numbers.any(|v| !v.is_finite()))
-    }
-
-    /// The largest force of a row; 1 if there is none. Collective.
-    fn largest_force(&self) -> f64 {
-        let lambda = self.inner.state.lambda.iter();
-        let mut largest = [lambda.fold(0.0f64, |a, l| a.max(l.abs()))];
-        max_all(self.method.session.comm(), &mut largest);
-        if largest[0] > 0.0 {
-            largest[0]
-        } else {
-            1.0
-        }
     }
 
     /// Lets nodes stick where slipping ones leave a body loose that the load drives. Returns whether some had to.
@@ -226,42 +137,18 @@ impl<'a> Friction<'a> {
         let (_, load) = self.loads.with_multipliers(problem, &dual, &given)?;
         drop(dual);
         let mut active = self.inner.state.active.clone();
-        for node in &self.nodes {
-            // The springs across slips give way as far as a body slides.
-            let sticks = node.state == NodeState::Stick;
-            node.tangential.iter().for_each(|&t| active[t] = sticks);
-        }
-        // Of nodes that slip the one that slips least: the others then slip on in their directions. Where that does not
-        // help, rows that push come first: a body that tips comes to rest on them.
-        let tuning = &self.settings.tuning.friction;
-        let last = if self.slides >= tuning.tips {
-            f64::MAX.sqrt()
-        } else {
-            0.0
-        };
-        let length = self.inner.length.max(f64::MIN_POSITIVE);
+        self.nodes.sticking(&mut active);
         let mut scores = vec![0.0; active.len()];
-        for node in &self.nodes {
-            let score = -node.excess - last * (1.0 + node.excess / length);
-            node.tangential.iter().for_each(|&t| scores[t] = score);
-        }
+        self.nodes.score(self.inner.length, &mut scores);
         let mut held = active.clone();
         let put_back = self.inner.hold(&mut held, &load, Some(&scores))?;
-        let mut restored = false;
-        for node in &mut self.nodes {
-            let back = node.tangential.iter().any(|&t| held[t] && !active[t]);
-            if back {
-                node.state = NodeState::Stick;
-                restored = true;
-            }
-        }
-        for node in &self.nodes {
-            self.inner.state.active[node.normal] = held[node.normal];
-        }
         let comm = self.method.session.comm();
-        let restored = any(comm, restored);
-        self.slides = if put_back > 0 { self.slides + 1 } else { 0 };
-        if self.slides > tuning.slides {
+        let restored = self.nodes.stick(comm, &active, &held);
+        let law = &self.method.dual().stiffness.jump.law;
+        let pairs = self.inner.state.active.iter_mut().zip(held).zip(law);
+        let others = pairs.filter(|(_, law)| !law.is_friction());
+        others.for_each(|((active, held), _)| *active = held);
+        if self.nodes.slides(put_back > 0) {
             // Which body it is, and its motion: that of the load beside all forces of friction that are given.
             self.inner.hold(&mut active, &load, None)?;
         }
@@ -313,17 +200,17 @@ impl Strategy<DualCourse> for Friction<'_> {
             let state = &mut self.inner.state;
             state.safeguarded = false;
             let is_last = renewal == tuning.renewals;
-            // Where states wander, they are asked only once the forces are at rest: they are given, and mislead.
-            if self.progress.stalled(tuning.patience) && !is_last && self.unrest() > tuning.rest {
-                self.renew();
+            // Where states wander, they are asked only once the forces are at rest.
+            let comm = self.method.session.comm();
+            if !is_last && self.nodes.misled(comm, &state.lambda) {
+                self.nodes.renew(comm, &state.lambda);
+                state.active.clone_from(&state.before);
+                self.inner.tight = false;
                 whole = Some(step);
                 continue;
             }
-            let stays = !any(
-                self.method.session.comm(),
-                self.inner.state.active != self.inner.state.before,
-            );
-            let (flips, moves) = self.update(stays)?;
+            let stays = !any(comm, state.active != state.before);
+            let Changes { flips, moves } = self.update(stays)?;
             let restored = self.hold()?;
             step.wrong += flips;
             let settled = flips == 0 && !restored;
@@ -335,8 +222,7 @@ impl Strategy<DualCourse> for Friction<'_> {
             // A step to the end is worth it where the forces of friction have come to rest.
             self.inner.tight &= still;
             if !(settled && stays) || is_last {
-                self.progress.note(step.wrong);
-                self.inner.state.safeguarded = self.progress.stalled(tuning.wanders);
+                self.inner.state.safeguarded = self.nodes.wander(step.wrong);
                 return Ok((step, Proposal::GoOn));
             }
             whole = Some(step);

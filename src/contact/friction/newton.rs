@@ -11,10 +11,10 @@
 
 use super::lagrangian::FrictionLagrangian;
 use super::node::NodeState;
+use super::nodes::Nodes;
 use crate::contact::line_search::{LineSearchPoint, Penalty};
 use crate::contact::settings::ContactType;
 use crate::contact::state::{changes, Step};
-use crate::feti::jump::turn::Turn;
 use crate::feti::krylov::iterate::{IterationControl, KrylovRun};
 use crate::feti::krylov::target::target;
 use crate::status::Status;
@@ -69,10 +69,7 @@ impl FrictionLagrangian<'_> {
             let tolerance = (reduction * first).max(least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control, None)?;
-            run = Some(match run.take() {
-                Some(before) => before.followed_by(more),
-                None => more,
-            });
+            run = Some(more.after(run.take()));
             let end = self.evaluate_point()?;
             let length = match &self.point {
                 Some(point) => self.penalty().length(comm, [point, &end], restored),
@@ -152,7 +149,7 @@ impl FrictionLagrangian<'_> {
         let mut restored = false;
         let mut active = loop {
             self.turn()?;
-            let given = self.given();
+            let given = Nodes::given(&self.nodes, self.law.len());
             let dual = method.dual();
             let (g, kernel) = self
                 .loads
@@ -252,31 +249,9 @@ impl FrictionLagrangian<'_> {
 
     /// Turns the rows of nodes that slip along their slips. Collective.
     fn turn(&mut self) -> Result<()> {
-        let turns: Vec<Turn> = self.nodes.iter_mut().filter_map(|n| n.turn()).collect();
+        let turns = Nodes::turns(&mut self.nodes);
         self.turned.turn(&turns);
-        self.follow(&turns)
-    }
-
-    /// Turns the multipliers along with the rows.
-    pub(super) fn follow(&self, turns: &[Turn]) -> Result<()> {
-        let mut lambda = self.at.lambda.array_mut()?;
-        for turn in turns {
-            let [a, b] = turn.rows;
-            [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
-        }
-        Ok(())
-    }
-
-    /// The given forces of friction on the owned rows.
-    fn given(&self) -> Vec<f64> {
-        let mut given = vec![0.0; self.law.len()];
-        for node in &self.nodes {
-            let force = node.on_rows(node.force());
-            for (&t, f) in node.tangential.iter().zip(force) {
-                given[t] = f;
-            }
-        }
-        given
+        self.at.turn(&turns)
     }
 
     /// Values in the directions that were given, on the rows as they are turned.

@@ -356,4 +356,4 @@ fn length(v: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 #[path = "../../../tests/inside/contact/friction/node.rs"]
-mod tests;
+pub(super) mod tests;

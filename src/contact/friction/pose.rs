@@ -1,6 +1,7 @@
 //! The states of nodes in the equations: rows that hold, turns, springs, given forces.
 
 use super::node::{Node, NodeState};
+use super::nodes::Nodes;
 use super::Friction;
 use crate::feti::jump::turn::Turn;
 use crate::Result;
@@ -13,7 +14,7 @@ impl Friction<'_> {
         self.turn()?;
         let given = self.given();
         let mut springs = vec![0.0; given.len()];
-        for node in &self.nodes {
+        for node in &self.nodes.list {
             for (&t, holds) in node.tangential.iter().zip(node.holds()) {
                 self.inner.state.active[t] = holds;
             }
@@ -36,7 +37,12 @@ impl Friction<'_> {
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
         let active = &mut self.inner.state.active;
-        let across: HashSet<usize> = self.nodes.iter().filter_map(Node::slips_beside).collect();
+        let across: HashSet<usize> = self
+            .nodes
+            .list
+            .iter()
+            .filter_map(Node::slips_beside)
+            .collect();
         let own = |i: usize| jump.compliance.get(i).copied().unwrap_or(0.0);
         for block in jump.blocks.iter().filter(|b| b.rows.len() > 3) {
             let (start, n) = (block.rows.start, block.rows.len());
@@ -64,19 +70,9 @@ impl Friction<'_> {
 
     /// Turns the rows of nodes that slip along their slips. Collective.
     pub(super) fn turn(&mut self) -> Result<()> {
-        let turns: Vec<Turn> = self.nodes.iter_mut().filter_map(Node::turn).collect();
+        let turns: Vec<Turn> = Nodes::turns(&mut self.nodes.list);
         self.turned.turn(&turns);
-        self.follow(&turns)
-    }
-
-    /// Turns the multipliers of the loop along with the rows.
-    fn follow(&self, turns: &[Turn]) -> Result<()> {
-        let mut lambda = self.inner.at.lambda.array_mut()?;
-        for turn in turns {
-            let [a, b] = turn.rows;
-            [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
-        }
-        Ok(())
+        self.inner.at.turn(&turns)
     }
 
     /// Puts springs into rows, beside the compliance that they have of themselves. Collective.
@@ -106,20 +102,20 @@ impl Friction<'_> {
         let method = self.method;
         let mut active = method.dual().stiffness.jump.active.clone();
         let held = active.clone();
-        for node in &self.nodes {
+        for node in &self.nodes.list {
             let sticks = node.state == NodeState::Stick;
             node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
-        let in_space = self.nodes.iter().any(|n| n.tangential.len() > 1);
+        let in_space = self.nodes.list.iter().any(|n| n.tangential.len() > 1);
         if !any(method.session.comm(), in_space || active != held) {
             return Ok(());
         }
         let turns = self.turned.back();
-        self.follow(&turns)?;
+        self.inner.at.turn(&turns)?;
         self.soften(vec![0.0; active.len()]);
         let lambda = self.inner.at.lambda.to_vec()?;
         let mut given = vec![0.0; active.len()];
-        for &t in self.nodes.iter().flat_map(|n| &n.tangential) {
+        for &t in self.nodes.list.iter().flat_map(|n| &n.tangential) {
             given[t] = if active[t] { 0.0 } else { lambda[t] };
         }
         method.system.set_given_multipliers(given.clone());
@@ -131,14 +127,7 @@ impl Friction<'_> {
 
     /// The given multipliers on the owned rows.
     pub(super) fn given(&self) -> Vec<f64> {
-        let mut given = vec![0.0; self.method.dual().stiffness.jump.n_owned];
-        for node in &self.nodes {
-            let force = node.on_rows(node.force());
-            for (&t, f) in node.tangential.iter().zip(force) {
-                given[t] = f;
-            }
-        }
-        given
+        Nodes::given(&self.nodes.list, self.inner.state.active.len())
     }
 
     /// Hands the loads with given multipliers to the equations. Collective.

@@ -97,15 +97,33 @@ impl KrylovRun {
         self.status.broke_down() && moved
     }
 
-    /// This run, which was broken off, followed by a run with another preconditioner. The spectrum is that of the
-    /// second run.
-    pub fn followed_by(self, more: KrylovRun) -> KrylovRun {
-        let mut residuals = self.residuals;
-        residuals.extend(&more.residuals);
+    /// The run `before` that was broken off, if there is one, followed by this one with another preconditioner or
+    /// tolerance. The spectrum is that of this run.
+    pub fn after(self, before: Option<KrylovRun>) -> KrylovRun {
+        let Some(before) = before else {
+            return self;
+        };
+        let mut residuals = before.residuals;
+        residuals.extend(&self.residuals);
         KrylovRun {
-            iterations: self.iterations + more.iterations,
+            iterations: before.iterations + self.iterations,
             residuals,
-            ..more
+            ..self
+        }
+    }
+
+    /// The end of a loop after `iterations` in all its steps; residuals and spectrum are those of its last run.
+    pub fn of_loop(
+        iterations: usize,
+        status: Status,
+        (residuals, estimate): (Vec<f64>, Option<Spectrum>),
+    ) -> KrylovRun {
+        KrylovRun {
+            iterations,
+            status,
+            residuals,
+            estimate,
+            stopped: Stopped::No,
         }
     }
 

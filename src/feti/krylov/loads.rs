@@ -13,6 +13,7 @@ use cholesky::lanes::LANES;
 use parallel::exchange::highest;
 
 /// The data of the right-hand side of the dual problem.
+#[derive(Clone)]
 pub struct Loads {
     /// K_II⁻¹ f_I of each local subdomain, as [`ScaledSubdomain::condense_many`] leaves it.
     pub interiors: Vec<Vec<f64>>,

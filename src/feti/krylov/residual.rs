@@ -5,6 +5,7 @@
 //! ```
 
 use super::loads::Loads;
+use crate::feti::jump::turn::Turn;
 use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::InterfaceBuffers;
 use crate::Result;
@@ -107,6 +108,19 @@ impl Iterate {
             lambda: dual.multipliers()?,
             residual: Residual::new(dual)?,
         })
+    }
+
+    /// Turns λ along with rows.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn turn(&self, turns: &[Turn]) -> Result<()> {
+        let mut lambda = self.lambda.array_mut()?;
+        for turn in turns {
+            let [a, b] = turn.rows;
+            [lambda[a], lambda[b]] = turn.of([lambda[a], lambda[b]]);
+        }
+        Ok(())
     }
 
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.

@@ -149,10 +149,7 @@ impl LinearMethod {
             let (stopped, seen) = (run.stopped, run.estimate);
             let converged = run.status.converged();
             let again = run.broke_down(PROGRESS) && starts < STARTS;
-            let all = match so_far.take() {
-                Some(before) => before.followed_by(run),
-                None => run,
-            };
+            let all = run.after(so_far.take());
             if stopped == Stopped::Eigenvalue {
                 self.search(seen)?; /*                        P_2 = I − W (Wᵀ F W)⁺ Wᵀ F                 */
             } else if converged {

@@ -41,6 +41,8 @@ pub struct Inequalities {
     pub compliance: Vec<f64>,
     /// A unit of each row's difference in the row of the scene; a list shorter than `rows` stands for ones.
     pub scale: Vec<f64>,
+    /// The contact of each row; rows beyond the list are of one contact.
+    pub contact: Vec<[usize; 2]>,
     /// The nodes with friction, by the places of their rows here.
     pub friction: Vec<FrictionNode>,
     /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
@@ -77,6 +79,7 @@ impl Inequalities {
             let bound = layout.bound_of(ends.len(), row);
             let (places, scale) = bound.unwrap_or(([None; 2], 1.0));
             ends.push(places);
+            out.contact.push(row.label.source.code());
             out.initial.push(row.holds);
             out.compliance.push(row.compliance / (scale * scale));
             out.scale.push(scale);
@@ -242,6 +245,11 @@ impl Inequalities {
             out.push(list.clone());
         }
         out
+    }
+
+    /// The contact of a row.
+    pub fn contact_of(&self, row: usize) -> [usize; 2] {
+        self.contact.get(row).copied().unwrap_or_default()
     }
 
     /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the

@@ -292,7 +292,10 @@ impl Stepper {
             let owns = |s| self.mine.binary_search(&s).is_ok();
             let solved = (&self.solver, &out.solution);
             let before = (step, self.state.as_ref());
-            next.slid = slid::after(self.contacts.scene(), &owns, solved, before)?;
+            // Renewed contacts ask where their own sides stand.
+            if !self.contacts.scene().is_renewed() {
+                next.slid = slid::after(self.contacts.scene(), &owns, solved, before)?;
+            }
             self.state = Some(next);
             self.step = step + 1;
             self.phase = Phase::Before;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// A node with the normal row 0 and the tangential row 1, μ = 0.5 and k = 2.
-fn node(state: NodeState, g: f64) -> Node {
+pub fn node(state: NodeState, g: f64) -> Node {
     Node {
         normal: 0,
         tangential: vec![1],

@@ -16,8 +16,8 @@ use crate::assembled::reduced::Reduced;
 use crate::assembled::rows::Inequalities;
 use base::Result;
 use fetifeti::inside::driver::{Proposal, Strategy};
-use fetifeti::inside::mixing::Mixing;
-use fetifeti::inside::node::{Node, NodeState, Step};
+use fetifeti::inside::node::{Node, Step};
+use fetifeti::inside::nodes::{Changes, Nodes};
 use fetifeti::settings::FrictionTuning;
 use mpi::topology::SimpleCommunicator;
 
@@ -39,29 +39,24 @@ pub(super) struct StickAndSlip<'a, 'm> {
     rows: &'m Inequalities,
     tuning: FrictionTuning,
     alone: SimpleCommunicator,
-    nodes: Vec<Node>,
+    nodes: Nodes,
     /// Whether other rows hold each node along a tangent.
     held: Vec<bool>,
     /// The compliance of each row's nodes.
     give: Vec<f64>,
-    mixing: Mixing,
     state: SetState,
     /// Whether the next solve is one to the tolerance of the user.
     tight: bool,
-    /// The fewest wrong rows and nodes so far, and the steps since then.
-    progress: (usize, usize),
-    /// Steps in a row after which nothing but friction beyond its bound held a body.
-    slides: usize,
+    /// Whether a body slides away: nothing but friction beyond its bound has held it for many steps.
+    slides: bool,
     steps: usize,
     last: Option<Solved>,
 }
 
 /// The states that follow from a solve.
 struct Verdict {
-    /// Nodes with another state.
-    flips: usize,
-    /// The largest change of a force, relative to the largest force of a row.
-    moves: f64,
+    /// The changes of nodes.
+    changes: Changes,
     /// Whether friction beyond its bound had to hold a body.
     restored: bool,
     /// Whether a normal row that holds a body pulls.
@@ -86,19 +81,19 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
             let at = (&zeros[..], &all[..]);
             Node::new(given, |r| r, beside[given.normal], at, &give, &tuning)
         };
+        let list: Vec<Node> = rows.friction.iter().map(node).collect();
+        let contact = list.iter().map(|node| rows.contact_of(node.normal));
         StickAndSlip {
-            nodes: rows.friction.iter().map(node).collect(),
+            nodes: Nodes::new(list.clone(), contact.collect(), tuning),
             equations,
             rows,
             tuning,
             alone: SimpleCommunicator::self_comm(),
             held: Vec::new(),
             give,
-            mixing: Mixing::default(),
             state,
             tight: false,
-            progress: (usize::MAX, 0),
-            slides: 0,
+            slides: false,
             steps: 0,
             last: None,
         }
@@ -110,7 +105,7 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
         let each = || (0..rows.len()).map(|r| (r, rows.scale_of(r)));
         let mut lambda: Vec<f64> = each().map(|(r, s)| judged.lambda[r] / s).collect();
         let mut gaps: Vec<f64> = each().map(|(r, s)| judged.gaps[r] * s).collect();
-        for node in &self.nodes {
+        for node in &self.nodes.list {
             if let [a, b] = node.tangential[..] {
                 [lambda[a], lambda[b]] = node.on_rows([lambda[a], lambda[b]]);
                 [gaps[a], gaps[b]] = node.on_rows([gaps[a], gaps[b]]);
@@ -143,29 +138,12 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
             active: &holds,
             nothing: self.tuning.even * rtol * solved.judged.largest[1],
         };
-        let (before, force) = (self.bounds(), largest(&lambda));
-        let (mut flips, mut moves) = (0, 0.0f64);
-        for node in &mut self.nodes {
-            let change = node.update(&step, false);
-            flips += usize::from(change.flips);
-            moves = moves.max(change.moves);
-        }
-        if flips == 0 && stays {
-            flips = self
-                .nodes
-                .iter_mut()
-                .filter_map(|n| n.gives_way(&step).then_some(()))
-                .count();
-        }
-        if flips > 0 || !stays {
-            self.mixing.restart();
-        } else {
-            self.mix(before, self.bounds());
-        }
+        let changes = self
+            .nodes
+            .update(&self.alone, &step, (&solved.active, &mut next, stays));
         let [restored, pulls] = self.hold(&mut next, solved);
         Verdict {
-            flips,
-            moves: moves / force,
+            changes,
             restored,
             pulls,
             stays: remains(&next),
@@ -177,61 +155,20 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
     /// whether such a normal row pulls.
     fn hold(&mut self, next: &mut [bool], solved: &Solved) -> [bool; 2] {
         let judged = &solved.judged;
-        let (mut held, mut score) = (next.to_vec(), judged.score.clone());
-        for node in &self.nodes {
-            for &t in &node.tangential {
-                held[t] = node.state == NodeState::Stick;
-                score[t] = match node.state {
-                    NodeState::Apart => f64::NEG_INFINITY,
-                    // The one that has slipped least.
-                    _ => -judged.gaps[t].abs(),
-                };
-            }
-        }
+        let (mut before, mut score) = (next.to_vec(), judged.score.clone());
+        self.nodes.sticking(&mut before);
+        self.nodes.score(judged.largest[1], &mut score);
+        let mut held = before.clone();
         let added = self.rows.restore(&mut held, &score);
-        let mut restored = false;
-        for node in &mut self.nodes {
-            if node.tangential.iter().any(|t| added.contains(t)) {
-                node.state = NodeState::Stick;
-                restored = true;
-            }
-        }
+        let restored = self.nodes.stick(&self.alone, &before, &held);
+        self.slides = self.nodes.slides(!added.is_empty());
         let tangential = self.rows.tangential();
         let mut pulls = false;
         for r in added.into_iter().filter(|&r| !tangential[r]) {
             next[r] = true;
             pulls |= !judged.idle(r, IDLE);
         }
-        self.slides = if restored { self.slides + 1 } else { 0 };
         [restored, pulls]
-    }
-
-    /// The bounds g of the nodes that slip; 0 for the others.
-    fn bounds(&self) -> Vec<f64> {
-        self.nodes.iter().map(Node::slipping).collect()
-    }
-
-    /// Mixes bounds and those that follow from them.
-    fn mix(&mut self, before: Vec<f64>, mapped: Vec<f64>) {
-        let mixed = self
-            .mixing
-            .mix(&self.alone, self.tuning.mixed, before, &mapped);
-        for (node, g) in self.nodes.iter_mut().zip(mixed) {
-            node.g = g.max(0.0);
-        }
-    }
-
-    /// The bounds that follow from a solve, if forces have yet to move: while states wander, they are asked only once
-    /// the forces are at rest.
-    fn unrest(&self, solved: &Solved) -> Option<Vec<f64>> {
-        if self.progress.1 < self.tuning.patience {
-            return None;
-        }
-        let [lambda, _] = self.seen(solved);
-        let mapped: Vec<f64> = self.nodes.iter().map(|n| n.following(&lambda)).collect();
-        let moves = mapped.iter().zip(self.bounds());
-        let moves = moves.fold(0.0f64, |a, (next, g)| a.max((next - g).abs()));
-        (moves > self.tuning.rest * largest(&lambda)).then_some(mapped)
     }
 
     /// The manner of the next solve, the first one of a step or a later one.
@@ -246,15 +183,6 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
             digits: if self.tight { 1.0 } else { self.tuning.digits },
             ..Manner::to_the_end(MultiplierSigns::Any)
         }
-    }
-
-    /// Notes the number of wrong rows and nodes after a step.
-    fn note(&mut self, wrong: usize) {
-        let (fewest, idle) = self.progress;
-        self.progress = match wrong < fewest {
-            true => (wrong, 0),
-            false => (fewest, idle + 1),
-        };
     }
 }
 
@@ -283,8 +211,9 @@ impl Strategy<AssembledCourse> for StickAndSlip<'_, '_> {
                 return Ok((step, Proposal::End((false, reason))));
             }
             let is_last = renewal == self.tuning.renewals;
-            if let Some(mapped) = self.unrest(&solved).filter(|_| !is_last) {
-                self.mix(self.bounds(), mapped);
+            let [lambda, _] = self.seen(&solved);
+            if !is_last && self.nodes.misled(&self.alone, &lambda) {
+                self.nodes.renew(&self.alone, &lambda);
                 self.tight = false;
                 self.state.exerted.given = self.given();
                 self.equations.borrow_mut().again(solved);
@@ -292,16 +221,16 @@ impl Strategy<AssembledCourse> for StickAndSlip<'_, '_> {
             }
             let verdict = self.update(&solved);
             let stays = verdict.stays;
-            let settled = verdict.flips == 0 && !verdict.restored;
+            let settled = verdict.changes.flips == 0 && !verdict.restored;
             let equations = self.equations.borrow();
             let at_rest = match equations.is_refined() {
                 true => AT_REST,
                 false => self.tuning.still * equations.rtol(),
             };
             drop(equations);
-            let still = settled && verdict.moves <= at_rest;
+            let still = settled && verdict.changes.moves <= at_rest;
             let trouble = match () {
-                () if self.slides > self.tuning.slides => Some("DIVERGED_CONTACT_SLIDES"),
+                () if self.slides => Some("DIVERGED_CONTACT_SLIDES"),
                 () if still && stays && verdict.pulls => Some("DIVERGED_CONTACT_LOOSE"),
                 () if self.steps >= STEPS => Some("DIVERGED_CONTACT_ITS"),
                 () => None,
@@ -317,7 +246,8 @@ impl Strategy<AssembledCourse> for StickAndSlip<'_, '_> {
             }
             self.tight = stays && still;
             if !(settled && stays) || is_last {
-                self.note(solved.judged.count() + verdict.flips);
+                self.nodes
+                    .wander(solved.judged.count() + verdict.changes.flips);
                 self.state = solved.following();
                 self.state.active = verdict.next;
                 return Ok((step, Proposal::GoOn));
@@ -335,15 +265,5 @@ impl Strategy<AssembledCourse> for StickAndSlip<'_, '_> {
     ) -> Result<ActiveSetEnd> {
         let last = self.last.expect("the loop ends at a solution");
         self.equations.borrow().ended(last, (steps, seconds), end)
-    }
-}
-
-/// The largest force; 1 if there is none.
-fn largest(lambda: &[f64]) -> f64 {
-    let most = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
-    if most > 0.0 {
-        most
-    } else {
-        1.0
     }
 }

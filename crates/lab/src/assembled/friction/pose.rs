@@ -16,7 +16,7 @@ impl StickAndSlip<'_, '_> {
             let row = rows.rows[r];
             sets.join(row.plus, row.minus, 0.0).is_none()
         };
-        for node in &mut self.nodes {
+        for node in &mut self.nodes.list {
             node.turn();
             let sticks = node.state == NodeState::Stick;
             node.tangential.iter().for_each(|&t| active[t] = sticks);
@@ -41,7 +41,7 @@ impl StickAndSlip<'_, '_> {
             sets.find(row.plus).0 != sets.find(row.minus).0
         };
         self.held.clear();
-        for node in &self.nodes {
+        for node in &self.nodes.list {
             self.held.push(!node.tangential.iter().all(&mut apart));
         }
         self.state.exerted = ExertedForces {
@@ -64,7 +64,7 @@ impl StickAndSlip<'_, '_> {
                 rest: 0.0,
             })
             .collect();
-        for (node, &held) in self.nodes.iter().zip(&self.held) {
+        for (node, &held) in self.nodes.list.iter().zip(&self.held) {
             let (NodeState::Slip(d), [a, b]) = (node.state, &node.tangential[..]) else {
                 continue;
             };
@@ -88,7 +88,7 @@ impl StickAndSlip<'_, '_> {
     /// Hands the renewed forces to the equations of the same states. The matrix stays, unless springs have changed
     /// much: one that is kept is at rest at the present slip.
     pub(super) fn renew(&mut self, solved: Solved) {
-        self.nodes.iter_mut().for_each(|node| {
+        self.nodes.list.iter_mut().for_each(|node| {
             node.turn();
         });
         self.state.exerted.given = self.given();
@@ -116,7 +116,7 @@ impl StickAndSlip<'_, '_> {
     /// The given forces of nodes that slip, by row.
     pub(super) fn given(&self) -> Vec<f64> {
         let mut given = vec![0.0; self.rows.len()];
-        for node in &self.nodes {
+        for node in &self.nodes.list {
             for (&t, force) in node.tangential.iter().zip(node.force()) {
                 given[t] = self.rows.scale_of(t) * force;
             }
