@@ -39,6 +39,22 @@ pub(super) fn largest(arrows: &[Arrow], longest: f64) -> Option<f64> {
     (largest > 0.0 && longest >= SHORTEST).then_some(largest)
 }
 
+/// The corners of a picture with room for arrows in it; a stress of 1 is `unit` long.
+pub(super) fn room(
+    arrows: &[Arrow],
+    [mut low, mut high]: [[f64; 2]; 2],
+    unit: f64,
+) -> [[f64; 2]; 2] {
+    for arrow in arrows.iter().filter(|a| size(a).is_finite()) {
+        for d in 0..2 {
+            let tip = arrow.at[d] + unit * arrow.stress[d];
+            low[d] = low[d].min(tip);
+            high[d] = high[d].max(tip);
+        }
+    }
+    [low, high]
+}
+
 /// Draws arrows, the longest one in any case; a stress of 1 is `unit` logical pixels long.
 pub(super) fn draw(raster: &mut Raster, arrows: &[Arrow], view: &View, unit: f64) {
     let long = |a: &&Arrow| unit * size(a) >= DOT && size(a).is_finite();

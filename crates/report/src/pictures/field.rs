@@ -46,6 +46,8 @@ const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
 /// Length of the longest arrow in logical pixels; shorter where bodies are small.
 const LONGEST: f64 = 40.0;
+/// Room beyond the tip of the longest arrow, for its border.
+const TIP: f64 = 3.0;
 /// Colour of the outlines of undeformed bodies.
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
@@ -82,7 +84,18 @@ fn draw(
     } else {
         (400.0 / size[0]).min(520.0 / size[1])
     };
-    let (w, h) = (scale * size[0], scale * size[1]);
+    let extent =
+        |[low, high]: [[f64; 2]; 2]| (scale * (high[0] - low[0]), scale * (high[1] - low[1]));
+    let (w, h) = extent([low, high]);
+    let body_width = (w * h / mesh.count(mesh.body).max(1) as f64).sqrt();
+    let longest = f64::min(LONGEST, 0.3 * body_width);
+    let largest = arrows::largest(marked.tractions, longest);
+    if let Some(largest) = largest {
+        // The scale stays, and the picture grows: an arrow would cross a title or an axis.
+        let unit = (longest + TIP) / (largest * scale);
+        [low, high] = arrows::room(marked.tractions, [low, high], unit);
+    }
+    let (w, h) = extent([low, high]);
     // A colour bar needs a certain height, a title a certain width, for any shape of the mesh.
     let cell = (
         LEFT + w.max(120.0) + BAR_GAP + BAR + LABELS,
@@ -90,9 +103,6 @@ fn draw(
     );
     let n = fields.len().max(1) as f64;
     let (columns, rows) = if wide { (1.0, n) } else { (n, 1.0) };
-    let body_width = (w * h / mesh.count(mesh.body).max(1) as f64).sqrt();
-    let longest = f64::min(LONGEST, 0.3 * body_width);
-    let largest = arrows::largest(marked.tractions, longest);
     let traction = largest.map(|t| format!("traction, at most {}", ticks::number(t)));
     let (wide_legend, below) = marks::legend_size(marked.contact, traction.as_deref());
     let content = ((columns * cell.0).max(wide_legend), rows * cell.1 + below);

@@ -267,3 +267,37 @@ fn zones_and_tractions_of_friction_are_drawn() {
     assert!(changed(0..w / 2) > 100);
     assert_eq!(changed(w / 2 + 40..w), 0);
 }
+
+/// Arrows that leave the bodies have room: the picture grows, and nothing of them is on the title or on the numbers.
+#[test]
+fn arrows_stay_off_titles() {
+    let mesh = grid(2, 2, 4, false);
+    let u = vec![0.5; mesh.points.len()];
+    let field = [ShownField::nodal("u", &u)];
+    let shown = |stress: [f64; 2]| {
+        let at = |k: usize| [k as f64 / 16.0, 1.0];
+        let tractions: Vec<Arrow> = (0..=16).map(|k| Arrow { at: at(k), stress }).collect();
+        let marked = Marked {
+            contact: &[],
+            tractions: &tractions,
+        };
+        draw(&Beside::default(), &mesh.view(), &field, &marked, false, "")
+    };
+    let (inside, outside) = (shown([0.0, -3.0]), shown([0.0, 3.0]));
+    let body_width = 400.0 / 2.0;
+    let longest = f64::min(LONGEST, 0.3 * body_width);
+    let grown = outside.size().1 - inside.size().1;
+    assert!(
+        (grown as f64 - 2.0 * (longest + TIP)).abs() <= 2.0,
+        "{grown}"
+    );
+    assert_eq!(outside.size().0, inside.size().0);
+    // Between the title and the bodies: arrows, whose tips lie below the title.
+    let first = ((6.0 + 2.4 * TEXT) * 2.0) as usize;
+    let dark = |y: usize| {
+        let xs = (2.0 * LEFT) as usize..(2.0 * (LEFT + 400.0)) as usize;
+        xs.filter(|&x| outside.get(x, y).0 < 100).count()
+    };
+    assert_eq!(dark(first), 0);
+    assert!(dark(first + 40) > 17);
+}
