@@ -9,6 +9,7 @@ mod checkpoint_files;
 mod checkpoint_refused;
 mod contact;
 mod deck;
+mod deck_gaps;
 mod elastic;
 mod energy;
 mod friction;

@@ -59,7 +59,7 @@ pub fn mesh(bytes: &[u8]) {
 
 fn bodies(file: MeshFile, name: &str) {
     let groups = file.groups.clone();
-    let _ = file.unused(3, &[]);
+    let _ = file.unused(3, &[], &[]);
     let mut file = file;
     for dim in [2, 3] {
         let mut mesh = Extractor::new(file, dim);

@@ -48,6 +48,9 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     let interface = &scene.interfaces[k];
     let [a, b] = interface.order.map(|o| interface.bodies[o]);
     let body = |b: usize| &scene.bodies[b].spec.name;
+    if interface.area.is_some() {
+        return format!("{}|{} gaps", body(a), body(b));
+    }
     if a == b {
         // A body that touches itself does so with two sides.
         let [first, second] = interface.order.map(|o| {

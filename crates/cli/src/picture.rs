@@ -20,7 +20,7 @@ use report::pictures::pieces::pieces;
 use report::pictures::rigid_faces::{Beside, Polygon};
 use report::pictures::solid::{self, FaceMark, SolidMesh};
 use report::pictures::values::ShownValues;
-use scene::Scene;
+use scene::{Rigid, Scene};
 
 /// Magnified, bodies may overlap by at most this part of the scene's size: by the width of a line.
 const OVERLAP: f64 = 0.001;
@@ -137,7 +137,8 @@ fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<ShownObst
         let u = point.map_or([0.0; 3], |&p| all.displacement(scene, p));
         let distance = rigid.distance(row.label.point).map_or(0.0, |d| d.0);
         let gap = row.gap + dot(u, row.normal()) - distance;
-        if !out.iter().any(|o| o.rigid == rigid) {
+        let placed = !matches!(rigid, Rigid::Behind { .. });
+        if placed && !out.iter().any(|o| o.rigid == rigid) {
             out.push(ShownObstacle { rigid, gap });
         }
     }

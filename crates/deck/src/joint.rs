@@ -102,7 +102,7 @@ pub enum Overclosure {
     },
 }
 
-/// A *SURFACE INTERACTION.
+/// A *SURFACE INTERACTION, or the law of a *GAP.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interaction {
     /// Its name, in capitals.

@@ -36,8 +36,7 @@ const ELECTRIC: KeywordTreatment =
 const DESIGN: KeywordTreatment =
     Refused("it asks for sensitivities or another design, and only the displacement is solved for");
 const SLENDER: KeywordTreatment = Refused("beams, shells, membranes and trusses are not supported");
-const DISCRETE: KeywordTreatment =
-    Refused("springs, dashpots, gaps and point masses are not supported");
+const DISCRETE: KeywordTreatment = Refused("springs, dashpots and point masses are not supported");
 const COUPLED: KeywordTreatment =
     Refused("rigid and averaged couplings of nodes are not supported; write them as *EQUATION");
 const NONLINEAR: KeywordTreatment = InMaterial("only isotropic linear elasticity is supported");
@@ -162,7 +161,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("FLUID SECTIONS", FLUID),
     ("FREQUENCY", WAVES),
     ("FRICTION", Read),
-    ("GAP", DISCRETE),
+    ("GAP", Read),
     ("GAP CONDUCTANCE", HEAT_ONLY),
     ("GAP HEAT GENERATION", HEAT_ONLY),
     ("GEOMETRIC CONSTRAINT", DESIGN),

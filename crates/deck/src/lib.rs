@@ -9,6 +9,7 @@ mod cards;
 mod dat;
 mod deck_line;
 mod element;
+mod gap;
 mod joint;
 mod keywords;
 mod model;
@@ -19,6 +20,7 @@ mod step;
 pub use dat::{read_dat, write_dat, DatQuantity, DatTable, TableRow};
 pub use deck_line::{DeckLine, Files, Note};
 pub use element::{ElementModel, ElementType, Integration};
+pub use gap::{Gap, GapElement};
 pub use joint::{
     Adjust, ContactKind, ContactPair, Friction, Interaction, Overclosure, SurfaceName, Tie,
 };

@@ -2,6 +2,7 @@
 
 use super::deck_line::{DeckLine, Files, Note};
 use super::element::{ElementModel, ElementType};
+use super::gap::Gap;
 use super::joint::{ContactPair, Interaction, Tie};
 use super::step::DeckStep;
 use base::linalg::vec3::{cross, dot, minus, norm};
@@ -35,7 +36,9 @@ pub struct Deck {
     pub ties: Vec<Tie>,
     /// The contact pairs.
     pub contacts: Vec<ContactPair>,
-    /// The surface interactions.
+    /// The gap elements, by their *GAP.
+    pub gaps: Vec<Gap>,
+    /// The surface interactions, and the laws of the gap elements.
     pub interactions: Vec<Interaction>,
     /// The steps, each with everything that holds at its end.
     pub steps: Vec<DeckStep>,

@@ -75,10 +75,11 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// A sentence on the points that no cell of dimension `dim` has, nor one of the groups `kept`, if there are any:
-    /// they are left out.
-    pub fn unused(&self, dim: usize, kept: &[String]) -> Option<String> {
+    /// A sentence on the points that no cell of dimension `dim` has, nor one of the groups `kept`, if there are any but
+    /// those of `used`: they are left out.
+    pub fn unused(&self, dim: usize, kept: &[String], used: &[u32]) -> Option<String> {
         let mut has = vec![false; self.points.len()];
+        used.iter().for_each(|&k| has[k as usize] = true);
         let named = self.groups.iter().filter(|g| kept.contains(&g.name));
         let named = named.flat_map(|g| match &g.members {
             Members::Cells { cells, .. } => cells.clone(),

@@ -14,7 +14,7 @@ use base::Result;
 use mesh::Digits;
 
 /// Keywords that every instance of a part has of its own. Others are told once, where they stand in the part.
-const OF_INSTANCES: [&str; 12] = [
+const OF_INSTANCES: [&str; 13] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -27,6 +27,7 @@ const OF_INSTANCES: [&str; 12] = [
     "TIE",
     "BOUNDARY",
     "CLOAD",
+    "GAP",
 ];
 
 /// Lines that instances may have beside 100 for each line of the deck: few lines can say what no memory holds.
@@ -99,9 +100,15 @@ impl<'a> Flat<'a> {
             let again = std::mem::replace(&mut used[instance.part], true);
             let of_part = outline.parts[instance.part].cards.len();
             let mut system = InstancePlacement::NONE;
+            let mut of_gap = false;
             for (i, card) in of_instance(outline, instance).enumerate() {
                 let told = again && i < of_part;
-                if !told || OF_INSTANCES.contains(&card.keyword.as_str()) || is_system(card) {
+                let keyword = card.keyword.as_str();
+                // The law of gap elements stands below their *GAP.
+                let is_law = ["FRICTION", "SURFACEBEHAVIOR"].contains(&keyword);
+                of_gap = keyword == "GAP" || of_gap && keyword != "SURFACEINTERACTION";
+                let own = OF_INSTANCES.contains(&keyword) || of_gap && is_law;
+                if !told || own || is_system(card) {
                     self.card(card, [scope; 2], &instance.placement, &mut system)?;
                 }
             }

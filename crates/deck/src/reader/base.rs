@@ -1,5 +1,6 @@
 //! The deck as far as it is read, and the functions that every part of the reader needs.
 
+use super::gaps::Gaps;
 use super::held::{Amplitude, DeckState};
 use super::ids::Ids;
 use super::named::Sets;
@@ -39,6 +40,7 @@ pub(crate) struct DeckReader<'a> {
     pub(super) amplitude_names: HashMap<String, usize>,
     pub(super) materials: HashMap<String, u32>,
     pub(super) interactions: HashMap<String, u32>,
+    pub(super) gaps: Gaps,
     /// The contact pairs that say that nodes meet surfaces, by their lines.
     pub(super) by_nodes: Vec<DeckLine>,
     pub(super) state: DeckState,
@@ -65,6 +67,7 @@ impl<'a> DeckReader<'a> {
             amplitude_names: HashMap::new(),
             materials: HashMap::new(),
             interactions: HashMap::new(),
+            gaps: Gaps::default(),
             by_nodes: Vec::new(),
             state: DeckState::default(),
             entries: ENTRIES.saturating_add(cards.lines().saturating_mul(16)),

@@ -1,4 +1,4 @@
-//! *SURFACE INTERACTION with its *SURFACE BEHAVIOR and *FRICTION, and *CHANGE FRICTION.
+//! *SURFACE INTERACTION and *GAP with their *SURFACE BEHAVIOR and *FRICTION, and *CHANGE FRICTION.
 
 use super::base::DeckReader;
 use super::params::Params;
@@ -12,7 +12,7 @@ use base::Result;
 const STEEP: f64 = 50.0;
 
 impl<'a> DeckReader<'a> {
-    /// Reads the interactions: a property belongs to the *SURFACE INTERACTION before it.
+    /// Reads the interactions: a property belongs to the *SURFACE INTERACTION or the *GAP before it.
     pub(super) fn read_interactions(&mut self) -> Result<()> {
         let cards: &'a [Card] = &self.cards.cards;
         let mut current = None;
@@ -20,13 +20,15 @@ impl<'a> DeckReader<'a> {
         for card in cards {
             match card.keyword.as_str() {
                 "STEP" => steps = true,
-                "SURFACEINTERACTION" | "SURFACEBEHAVIOR" if steps => {
+                "SURFACEINTERACTION" | "SURFACEBEHAVIOR" | "GAP" if steps => {
                     return self.error(card, "it must stand before the first *STEP");
                 }
                 "SURFACEINTERACTION" => current = Some(self.interaction(card)?),
+                "GAP" => current = Some(self.gap(card)?),
                 "SURFACEBEHAVIOR" => {
                     let overclosure = self.behavior(card)?;
                     let at = self.owner(card, current)?;
+                    self.suits_gap(card, at, &overclosure)?;
                     self.deck.interactions[at].overclosure = overclosure;
                 }
                 "FRICTION" if !steps => {
@@ -68,7 +70,20 @@ impl<'a> DeckReader<'a> {
     fn owner(&self, card: &Card, current: Option<usize>) -> Result<usize> {
         match current {
             Some(i) => Ok(i),
-            None => self.error(card, "there is no *SURFACE INTERACTION before it"),
+            None => self.error(card, "there is no *SURFACE INTERACTION or *GAP before it"),
+        }
+    }
+
+    /// The error for a pressure that a gap element cannot have.
+    fn suits_gap(&self, card: &Card, interaction: usize, law: &Overclosure) -> Result<()> {
+        match (self.gaps.law(interaction), law) {
+            ((true, true), _) => {
+                self.error(card, "the *GAP before it gives a spring constant already")
+            }
+            ((true, false), Overclosure::Hard | Overclosure::Linear { .. }) | ((false, _), _) => {
+                Ok(())
+            }
+            _ => self.error(card, "gap elements are HARD or LINEAR"),
         }
     }
 
@@ -208,6 +223,14 @@ impl<'a> DeckReader<'a> {
     /// *CHANGE FRICTION: from this step on the *FRICTION that follows holds for the interaction.
     pub(super) fn change_friction(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
+        if let Some(elset) = params.name("ELSET")? {
+            params.done()?;
+            self.within_step(card)?;
+            self.no_change_pending()?;
+            let interaction = self.gap_interaction(card, elset)?;
+            self.state.changing = Some((interaction, card.place));
+            return Ok(());
+        }
         let name = params.required("INTERACTION")?;
         params.done()?;
         self.within_step(card)?;

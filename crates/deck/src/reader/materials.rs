@@ -1,6 +1,7 @@
 //! *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION, *INITIAL CONDITIONS.
 
 use super::base::DeckReader;
+use super::gaps;
 use super::named::increasing;
 use super::params::Params;
 
@@ -140,7 +141,9 @@ impl<'a> DeckReader<'a> {
         let Some(set) = self.elsets.get(elset) else {
             return self.error(card, format!("there is no element set {}", clip(elset)));
         };
-        let cells = increasing(&set.members);
+        let mut cells = increasing(&set.members);
+        // CalculiX's decks give sections to gap elements, too; they need none.
+        cells.retain(|&c| c < gaps::FIRST);
         let found = &self.deck.materials[material as usize];
         if let Some(Note {
             keyword,

@@ -4,6 +4,7 @@
 
 mod base;
 mod contact;
+mod gaps;
 mod held;
 mod ids;
 mod interactions;
@@ -53,6 +54,7 @@ impl<'a> DeckReader<'a> {
         for card in &self.cards.cards {
             self.rest(card)?;
         }
+        self.finish_gaps()?;
         self.end()?;
         self.deck.files = self.files.clone();
         Ok(self.deck)

@@ -4,6 +4,7 @@ use super::base::{title, DeckReader};
 use super::params::Params;
 use crate::cards::{Card, DataLine};
 use crate::element::{shape, what_is, ElementModel, ElementType};
+use crate::gap::GapElement;
 use crate::numbers::clip;
 use base::Result;
 use elements::kind::CellKind;
@@ -69,7 +70,12 @@ impl<'a> DeckReader<'a> {
         let set = params.name("ELSET")?;
         let name = params.required("TYPE")?;
         params.done()?;
-        let kind = self.element_kind(card, name)?;
+        // Gap elements are no cells.
+        let gap = self.whole && name == "GAPUNI";
+        let kind = match gap {
+            true => CellKind::Line2,
+            false => self.element_kind(card, name)?,
+        };
         let set = set.map(|name| self.elsets.open(name, card.place));
         let mut rows = self.cards.rows(card);
         let mut nodes = Vec::with_capacity(CellKind::MOST_NODES);
@@ -99,16 +105,26 @@ impl<'a> DeckReader<'a> {
                 // Abaqus has the middle between the ends.
                 nodes.swap(1, 2);
             }
-            let cell = self.deck.mesh.cells.len() as u32;
+            let cell = match (gap, &nodes[..]) {
+                (true, &[a, b]) => self.gaps.add(GapElement {
+                    id,
+                    nodes: [a, b],
+                    place: row.place,
+                }),
+                _ => self.deck.mesh.cells.len() as u32,
+            };
             if self.cells.places.insert(id, cell).is_some() {
                 let message = format!("element {id} is defined before");
                 return Err(self.files.error(row.place, message));
             }
-            self.deck.mesh.cells.push(kind, &nodes);
-            self.deck.mesh.cell_ids.push(id);
             if let Some(set) = set {
                 self.elsets.add(set, cell);
             }
+            if gap {
+                continue;
+            }
+            self.deck.mesh.cells.push(kind, &nodes);
+            self.deck.mesh.cell_ids.push(id);
             if let (true, Some(element)) = (self.whole, ElementType::named(name)) {
                 self.deck.elements.push(element);
             }

@@ -1,6 +1,7 @@
 //! *NSET, *ELSET, *SURFACE, and the groups that they become.
 
 use super::base::{title, DeckReader};
+use super::gaps;
 use super::ids::Ids;
 use super::named::{increasing, DeckSet, Sets, SurfaceGroups};
 use super::params::Params;
@@ -132,14 +133,9 @@ impl<'a> DeckReader<'a> {
 
     /// The cells that field `k` names by number or as a set.
     pub(super) fn target_cells(&self, row: &DataLine, k: usize) -> Result<Vec<u32>> {
-        target(
-            self.files,
-            &self.cells,
-            &self.elsets,
-            row,
-            k,
-            ("element", "an element", "element set"),
-        )
+        let what = ("element", "an element", "element set");
+        let found = target(self.files, &self.cells, &self.elsets, row, k, what)?;
+        self.cells_among(found, row.place)
     }
 
     /// Makes groups of sets and surfaces, in the order of the file.
@@ -173,7 +169,8 @@ impl<'a> DeckReader<'a> {
         let cells = &self.deck.mesh.cells;
         add("*NSET", &self.nsets, &nodes);
         add("*ELSET", &self.elsets, &|s| {
-            let all = increasing(&s.members);
+            let mut all = increasing(&s.members);
+            all.retain(|&c| c < gaps::FIRST);
             let by_dim = (0..=3).map(|dim| Members::Cells {
                 dim,
                 cells: (all.iter().copied())

@@ -114,7 +114,7 @@ fn wrong_laws_are_refused_in_a_sentence() {
     );
     assert_eq!(
         bad("*FRICTION\n.2,1.\n", ""),
-        "*FRICTION: there is no *SURFACE INTERACTION before it"
+        "*FRICTION: there is no *SURFACE INTERACTION or *GAP before it"
     );
     assert!(law("*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR\n0.\n")
         .ends_with("its numbers must be positive"));

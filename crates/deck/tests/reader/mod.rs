@@ -2,6 +2,7 @@
 
 mod bodies;
 mod friction;
+mod gaps;
 mod joints;
 mod sets;
 mod steps;

@@ -74,6 +74,8 @@ impl ShownObstacle {
             [a - BEYOND * size, b + BEYOND * size]
         };
         match self.rigid {
+            // It has no place of its own.
+            Rigid::Behind { .. } => Vec::new(),
             Rigid::Plane { point, normal } => {
                 let [u, v] = across(normal);
                 let foot = plus(point, normal, -self.gap);

@@ -321,7 +321,7 @@ fn supports(
 }
 
 /// Axis `dof` of a node's system.
-fn axis(deck: &Deck, node: u32, dof: usize) -> [f64; 3] {
+pub(super) fn axis(deck: &Deck, node: u32, dof: usize) -> [f64; 3] {
     match deck.frame(node) {
         Some(frame) => frame[dof],
         None => {

@@ -115,6 +115,7 @@ pub(super) fn contacts(
                 adjust
             },
             adjusted,
+            opposed: None,
             law: law(deck, pair, step)?,
             ramp: None,
             location: at(deck, pair.place),
@@ -235,6 +236,6 @@ pub(super) fn equations(deck: &Deck, numbers: &DeckNumbering) -> Result<Vec<Equa
     Ok(out)
 }
 
-fn at(deck: &Deck, place: deck::DeckLine) -> Location {
+pub(super) fn at(deck: &Deck, place: deck::DeckLine) -> Location {
     deck.files.location(place)
 }

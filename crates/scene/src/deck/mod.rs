@@ -1,12 +1,13 @@
 //! Scenes from decks of Abaqus or CalculiX.
 //!
-//! A connected part of a deck's mesh is a body. Nothing joins bodies but *TIE, *CONTACT PAIR and equations. A scene
-//! describes one step of the deck at its end. Steps of a linear analysis do not depend on each other, but for the slip
-//! of sides with friction ([`SlipHistory`]).
+//! A connected part of a deck's mesh is a body. Nothing joins bodies but *TIE, *CONTACT PAIR, *GAP and equations. A
+//! scene describes one step of the deck at its end. Steps of a linear analysis do not depend on each other, but for the
+//! slip of sides with friction ([`SlipHistory`]).
 
 mod bodies;
 mod carriers;
 mod element;
+mod gaps;
 mod joints;
 mod numbers;
 mod slip_history;
@@ -120,11 +121,14 @@ impl DeckScenes {
             let place = deck.files.at(note.place);
             format!("{place}: {}: {}", note.keyword, note.reason)
         });
-        let unused = deck.mesh.unused(deck.dim(), &[]);
+        let ends = deck.gaps.iter().flat_map(|gap| &gap.elements);
+        let ends: Vec<u32> = ends.flat_map(|e| e.nodes).collect();
+        let unused = deck.mesh.unused(deck.dim(), &[], &ends);
         let changes = self.changes.iter().cloned();
         let all = ignored.chain(replaced).chain(placed).chain(unused);
         let exchanged = carriers::notes(deck, &self.exchanged);
-        all.chain(changes).chain(exchanged).collect()
+        let ground = gaps::notes(deck, &self.numbers);
+        all.chain(changes).chain(exchanged).chain(ground).collect()
     }
 
     /// Number of steps, ≥ 1.
@@ -174,11 +178,15 @@ impl DeckScenes {
         let (bodies, mut equations) =
             bodies::of(deck, numbers, (&self.meshes, self.in_full), step)?;
         equations.extend(joints::equations(deck, numbers)?);
+        let mut contacts = joints::contacts(deck, numbers, &self.exchanged, step)?;
+        let (gaps, obstacles) = gaps::of(deck, numbers, &bodies, step)?;
+        contacts.extend(gaps);
         let spec = SceneSpec {
             form,
             default: ByDefault::Free,
             ties: joints::ties(deck),
-            contacts: joints::contacts(deck, numbers, &self.exchanged, step)?,
+            contacts,
+            obstacles,
             equations,
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)

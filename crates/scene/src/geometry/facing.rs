@@ -207,6 +207,7 @@ pub(crate) fn interface(
         distances,
         limits: Limits::default(),
         adjusted: Default::default(),
+        area: None,
         mortar: None,
     }
 }

@@ -82,6 +82,8 @@ pub struct BodyInterface {
     pub adjusted: BTreeMap<usize, f64>,
     /// The gaps at the nodes in contact.
     pub limits: Limits,
+    /// The area that belongs to each of its nodes; `None`: that of their faces.
+    pub area: Option<f64>,
     /// Where nodes do not match: `shared` then has the nodes that carry multipliers, each with the nearest node of the
     /// other body. `None`: nodes of `shared` are opposite each other.
     pub mortar: Option<Mortar>,

@@ -89,6 +89,7 @@ pub(super) fn of_surfaces(
         distances,
         limits: Limits::default(),
         adjusted: Default::default(),
+        area: None,
         mortar: Some(Mortar {
             multipliers,
             area: rows.iter().map(|r| r.area).sum(),

@@ -143,6 +143,7 @@ fn common(
         shared,
         limits: Limits::default(),
         adjusted: Default::default(),
+        area: None,
         mortar: None,
     }))
 }

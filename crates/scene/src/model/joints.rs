@@ -82,12 +82,25 @@ pub struct ContactSpec {
     pub adjust: f64,
     /// Nodes of the first body that count as touching, whatever their gap is.
     pub adjusted: Vec<BodyNode>,
+    /// The pairs of nodes that may touch, in place of what lies opposite each other.
+    pub opposed: Option<OpposedNodes>,
     /// Friction and softness.
     pub law: ContactLaw,
     /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, if it was.
     pub location: Location,
+}
+
+/// Pairs of nodes that may touch along a direction, wherever they lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpposedNodes {
+    /// The nodes, of the first body and of the second.
+    pub pairs: Vec<[usize; 2]>,
+    /// The unit vector out of the first body.
+    pub normal: [f64; 3],
+    /// The area that belongs to each pair.
+    pub area: f64,
 }
 
 /// Rigid obstacles beside a body: below ≤ u ≤ above on (part of) its sides.
@@ -115,6 +128,8 @@ pub struct ObstacleSpec {
     pub distance: Option<f64>,
     /// Initial distances and overclosures up to this length count as touching.
     pub adjust: f64,
+    /// The area that belongs to each node; `None`: that of its faces.
+    pub area: Option<f64>,
     /// Friction on the rigid body, and its softness.
     pub law: ContactLaw,
     /// Factor of the bounds, of the gap and of the motion over the load steps; `None`: the factor of all gaps.

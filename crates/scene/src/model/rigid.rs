@@ -1,4 +1,4 @@
-//! Rigid obstacles of elastic bodies: plane, cylinder, sphere, as distance and normal.
+//! Rigid obstacles of elastic bodies: plane, cylinder, sphere, points, as distance and normal.
 
 use base::linalg::vec3::{dot, minus, norm};
 
@@ -9,6 +9,11 @@ pub enum Rigid {
     Plane {
         /// A point of the plane.
         point: [f64; 3],
+        /// The unit normal, towards the side that is free.
+        normal: [f64; 3],
+    },
+    /// A plane of its own behind each node, through where the node is to begin with.
+    Behind {
         /// The unit normal, towards the side that is free.
         normal: [f64; 3],
     },
@@ -31,6 +36,7 @@ impl Rigid {
     pub fn distance(&self, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
         match *self {
             Rigid::Plane { point, normal } => Some((dot(minus(x, point), normal), normal)),
+            Rigid::Behind { normal } => Some((0.0, normal)),
             Rigid::Round {
                 centre,
                 axis,

@@ -100,6 +100,7 @@ impl SceneReader {
             motion: shape.motion,
             distance: shape.distance,
             adjust: shape.adjust,
+            area: None,
             law: law.clone(),
             ramp: ramp.clone(),
             location: item.location(),

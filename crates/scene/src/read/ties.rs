@@ -79,6 +79,7 @@ impl SceneReader {
             multipliers,
             adjust: adjust.unwrap_or(0.0),
             adjusted: Vec::new(),
+            opposed: None,
             law,
             ramp,
             location: item.location(),

@@ -21,7 +21,7 @@ pub(super) struct SceneEntries<'s> {
 /// Sentences on what is left out.
 pub(super) fn notes(source: &SceneMesh, entries: &SceneEntries<'_>) -> Vec<String> {
     let (file, dim) = (source.file(), source.dim());
-    let mut out: Vec<String> = file.unused(dim, &source.rigid).into_iter().collect();
+    let mut out: Vec<String> = file.unused(dim, &source.rigid, &[]).into_iter().collect();
     out.extend(cells(source));
     let named = source.bodies.iter().map(String::as_str).collect();
     let lost = |group: &MeshGroup| match &group.members {

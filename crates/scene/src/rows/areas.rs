@@ -59,8 +59,8 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// The area of a node; 0 on interfaces without contact, on interfaces that are no faces, and in problems without
-    /// pressures.
+    /// The area of a node, as its source says or by its faces; 0 on interfaces without contact, on interfaces that are
+    /// no faces, and in problems without pressures.
     pub fn at(&mut self, source: RowSource, BodyNode { body, node }: BodyNode) -> f64 {
         let may_touch = match source {
             RowSource::Interface(k) => self.scene.interfaces[k].has_contact(),
@@ -69,6 +69,14 @@ impl<'a> Areas<'a> {
         };
         if !(may_touch && self.scene.has_pressure()) {
             return 0.0;
+        }
+        let given = match source {
+            RowSource::Interface(k) => self.scene.interfaces[k].area,
+            RowSource::Obstacle(k) => self.scene.obstacles[k].area,
+            RowSource::Equation(_) => None,
+        };
+        if let Some(area) = given {
+            return area;
         }
         let found = self.known.entry((source, body));
         let areas = found.or_insert_with(|| areas(self.scene, source, body));

@@ -201,7 +201,7 @@ impl<'a> Checks<'a> {
                 let known = at_node.entry(member).or_default();
                 let before = known.iter().find(|&&k| {
                     let other = self.obstacle(&rows[k]);
-                    other.is_some_and(|o| (o.upper, o.rigid) == (obstacle.upper, obstacle.rigid))
+                    other.is_some_and(|o| o.is_one_with(obstacle))
                 });
                 if let Some(bound) = before.and_then(|&k| rows[k].bound.as_mut()) {
                     bound.limits.extend(same);

@@ -14,7 +14,7 @@ use crate::model::joints::{ContactSpec, Extent, PairSelector, TieSpec};
 use crate::model::profile::Profile;
 use crate::model::spec::{ByDefault, SceneSpec};
 use crate::model::steps::{Factors, Steps};
-use crate::rows::left_out;
+use crate::rows::{left_out, opposed};
 use base::{Error, Result};
 use std::collections::{HashMap, HashSet};
 
@@ -29,6 +29,7 @@ pub(crate) fn find_interfaces(
     unmatched(bodies, &mut matching, spec, &mut interfaces);
     let far = facing(bodies, matching, spec, &mut interfaces)?;
     let left_out = left_out::sentences(bodies, origins, &interfaces, &far);
+    opposed::add(bodies, spec, &mut interfaces);
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);

@@ -16,7 +16,7 @@ pub(crate) struct Entry<'a> {
     pub gap: Option<&'a Profile>,
     /// Which one it is, `None` for the default.
     pub id: Option<EntryId>,
-    /// Whether it names the sides: it applies to the interface of these sides only.
+    /// Whether it names the sides, or the nodes: it applies to the interface of these only.
     pub names_sides: bool,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Entry<'a> {
             location: Some(&spec.location),
             gap: Some(&spec.gap),
             id: Some(EntryId::Contact(number)),
-            names_sides: spec.sides.is_some(),
+            names_sides: spec.sides.is_some() || spec.opposed.is_some(),
         }
     }
 

@@ -12,14 +12,14 @@
 //! ```
 //!
 //! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
-//! nodes that it means. Interfaces of sides that an entry names come from `facing`, those of faces whose nodes do not
-//! match from `unmatched`. [`obstacles`] makes the second form of obstacles. Five files make the third, [`row::Row`]:
-//! [`points`] between nodes that coincide, at the points that a rank's bodies reach (`reach`); [`bounds`] beside
-//! obstacles; [`mortar`] where nodes do not match; [`facing_surfaces`] beside surfaces; [`equations`]. [`all`] puts
-//! them in order. Nothing after that asks who has made a row. [`table`] makes the fourth form. Normals and distances
-//! are computed once, with the second form, and areas ([`areas`]) with the label; reports, studies and C read them in
-//! the solved row. A load step evaluates only the right-hand sides of the third form. Balances and forces at nodes take
-//! all terms of a row from [`terms`], those of given values among them.
+//! nodes that it means. Interfaces of sides that an entry names come from `facing`, those of nodes that it names from
+//! `opposed`, those of faces whose nodes do not match from `unmatched`. [`obstacles`] makes the second form of
+//! obstacles. Five files make the third, [`row::Row`]: [`points`] between nodes that coincide, at the points that a
+//! rank's bodies reach (`reach`); [`bounds`] beside obstacles; [`mortar`] where nodes do not match; [`facing_surfaces`]
+//! beside surfaces; [`equations`]. [`all`] puts them in order. Nothing after that asks who has made a row. [`table`]
+//! makes the fourth form. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
+//! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
+//! third form. Balances and forces at nodes take all terms of a row from [`terms`], those of given values among them.
 
 pub mod all;
 pub mod areas;
@@ -37,6 +37,7 @@ pub mod links;
 mod meeting;
 pub mod mortar;
 pub mod obstacles;
+mod opposed;
 pub mod origin;
 pub mod points;
 mod reach;

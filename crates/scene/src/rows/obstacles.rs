@@ -40,6 +40,8 @@ pub struct Obstacle {
     pub surface: Option<Opposite>,
     /// The way that the rigid body moves, without the factors of load steps.
     pub motion: [f64; 3],
+    /// The area that belongs to each node; `None`: that of its faces.
+    pub area: Option<f64>,
     /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
     /// The way from each node that `adjust` counts as touching to the place at which it would touch.
@@ -97,6 +99,13 @@ impl Obstacle {
     /// Its entry; the first one, where several bound u itself.
     pub(crate) fn entry(&self) -> Option<EntryId> {
         self.limits.all().first().and_then(|l| l.entry)
+    }
+
+    /// Whether it has one row with another one at a node that both have. Planes behind single nodes have rows of their
+    /// own: two springs are not one.
+    pub(super) fn is_one_with(&self, other: &Obstacle) -> bool {
+        let own = matches!(self.rigid, Some(Rigid::Behind { .. }));
+        !own && (self.upper, self.rigid) == (other.upper, other.rigid)
     }
 
     /// Parameters of one of the nodes along the side, 0 ≤ t ≤ 1.
@@ -188,7 +197,8 @@ pub(crate) fn find_obstacles(
             }
             if let Some(rigid) = &entry.rigid {
                 let nodes = || selected.iter().map(|s| s.0);
-                let opposite = if lacks_signs(&bodies[b], side, nodes()) {
+                let by_faces = entry.area.is_none();
+                let opposite = if by_faces && lacks_signs(&bodies[b], side, nodes()) {
                     facing_surfaces::beneath(spec, form, side, (rigid, way), nodes())
                 } else {
                     None
@@ -275,19 +285,24 @@ pub(crate) fn find_obstacles(
                 surface.map_or_else(|| EntryId::Obstacle(k).to_string(), |name| name.clone())
             }
         };
+        let place = match own.and_then(|k| entries[k].rigid) {
+            Some(Rigid::Behind { .. }) => bodies[body].spec.name.clone(),
+            _ => format!(
+                "{}.{}",
+                bodies[body].spec.name,
+                bodies[body].mesh().side_name(side)
+            ),
+        };
         Obstacle {
             body,
             side,
             upper,
-            name: format!(
-                "{}.{} {what}",
-                bodies[body].spec.name,
-                bodies[body].mesh().side_name(side)
-            ),
+            name: format!("{place} {what}"),
             limits: Limits::new(of_side.limits),
             rigid: own.and_then(|k| entries[k].rigid),
             surface: of_side.surface,
             motion: own.map_or([0.0; 3], |k| entries[k].motion),
+            area: own.and_then(|k| entries[k].area),
             nearest: of_side.nearest,
             adjusted: of_side.adjusted,
             parameters: of_side.parameters,

@@ -286,6 +286,7 @@ fn found(
                     multipliers: Some(which),
                     adjust: auto.adjust,
                     adjusted: Vec::new(),
+                    opposed: None,
                     law: Default::default(),
                     ramp: None,
                     location: auto.location.clone(),
