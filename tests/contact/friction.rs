@@ -134,6 +134,58 @@ fn a_block_on_an_incline_stands_up_to_its_friction() {
     }
 }
 
+/// Contacts that `auto` finds have its law, in the plane and in space: a block stands on another one up to its
+/// friction, and has the forces of one whose contact is written out. A law of soft contact gives way.
+#[test]
+fn contact_that_is_found_has_its_law() {
+    let blocks = |dim: usize, pull: f64, contact: &str| {
+        let (depth, z) = if dim == 3 { (", 1", ", 0") } else { ("", "") };
+        let mesh = |n: usize| {
+            if dim == 3 {
+                format!("[{n}, 2, 2]")
+            } else {
+                format!("[{n}, 4]")
+            }
+        };
+        format!(
+            "dimension = {dim}\nphysics = \"elasticity\"\n[interface]\ndefault = \"free\"\n\
+             [[body]]\nname = \"base\"\nsize = [4, 1{depth}]\nelements = {}\nyoung = 10\npoisson = 0.3\n\
+             dirichlet = [\"bottom\"]\n[[body]]\nname = \"block\"\norigin = [1, 1{z}]\nsize = [2, 1{depth}]\n\
+             elements = {}\nyoung = 1\npoisson = 0.3\nload = [{pull}, -0.1{z}]\n{contact}\n",
+            mesh(8),
+            mesh(4)
+        )
+    };
+    let forces = |text: String| {
+        let solution = solved(text).expect("it stands");
+        assert!(solution.converged(), "{}", solution.status);
+        let along = |r: &fetifeti::solution::SolvedRow| r.multiplier * r.normal()[0];
+        let drag: f64 = solution.tangential_rows().iter().map(along).sum();
+        let normal: f64 = solution.rows().iter().map(|r| r.multiplier).sum();
+        (drag, normal, solution.energy)
+    };
+    // In space nodes slip sideways, too, and the loop gives up a little before all of them slip along the pull.
+    for (dim, pull) in [(2, 0.0295), (3, 0.028)] {
+        let (auto, written) = (
+            "[contact]\nauto = true",
+            "[[contact]]\nbodies = [\"base\", \"block\"]",
+        );
+        for law in ["friction = 0.3", "friction = 0.5\nfriction_limit = 0.1"] {
+            let found = forces(blocks(dim, pull, &format!("{auto}\n{law}")));
+            let named = forces(blocks(dim, pull, &format!("{written}\n{law}")));
+            near(found.0.abs(), 2.0 * pull, 1e-6, law);
+            near(found.1, 0.2, 1e-6, law);
+            near(found.2, named.2, 1e-8, law);
+        }
+        let slides = solved(blocks(dim, 0.0305, &format!("{auto}\nfriction = 0.3")));
+        let error = slides.map(|s| s.status).expect_err("it slides").to_string();
+        assert!(error.contains("\"block\""), "{error}");
+        let hard = forces(blocks(dim, 0.0, auto)).2;
+        let soft = format!("{auto}\nstiffness = 4\ntresca = 0.01\nstick_stiffness = 2");
+        assert!(forces(blocks(dim, 0.0, &soft)).2 < hard - 1e-4);
+    }
+}
+
 /// A bound that does not depend on the pressure, and a limit of Coulomb's: forces are at most s times the area.
 #[test]
 fn bounds_of_the_shear_stress_are_kept() {

@@ -63,6 +63,39 @@ fn bad_friction_is_named() {
         scalar,
         "s.toml:9: friction in a scene with one unknown at a node, where physics = \"elasticity\" was expected",
     );
+    // Contacts that are found have the same keys.
+    let auto = |physics: &str, law: &str| {
+        format!(
+            "{physics}[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n[[body]]\nname = \"b\"\norigin = [1, 0]\n\
+             size = 1\nelements = 2\n[contact]\nauto = true\n{law}\n"
+        )
+    };
+    let solid = "physics = \"elasticity\"\n";
+    refused(
+        &auto(solid, "friction = -0.1"),
+        "s.toml:13: -0.1 where a number that is not negative was expected",
+    );
+    refused(
+        &auto(solid, "friction_limit = 1"),
+        "s.toml:13: `friction_limit` without `friction`, which it limits",
+    );
+    refused(
+        &auto(solid, "tresca = 1\nfriction = 0.2"),
+        "s.toml:13: `tresca` beside `friction` where one was expected (a bound that does not depend on the pressure, \
+         or one that does)",
+    );
+    refused(
+        &auto(solid, "stiffness = 0"),
+        "s.toml:13: 0 where a positive number was expected",
+    );
+    refused(
+        &auto(solid, "stick_stiffness = 1"),
+        "s.toml:13: `stick_stiffness` without `friction` or `tresca`",
+    );
+    refused(
+        &auto("", "friction = 1"),
+        "s.toml:12: friction in a scene with one unknown at a node, where physics = \"elasticity\" was expected",
+    );
     let tied = "physics = \"elasticity\"\n[[body]]\nname = \"a\"\nsize = 1\nelements = 2\nyoung = 1\npoisson = 0\n\
                 [[body]]\nname = \"b\"\norigin = [1, 0]\nsize = 1\nelements = 2\nyoung = 1\npoisson = 0\n[[tie]]\n\
                 bodies = \"all\"\nfriction = 1\n";

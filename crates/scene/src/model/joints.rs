@@ -145,6 +145,8 @@ pub struct AutoContact {
     pub distance: Option<f64>,
     /// Initial gaps and overclosures up to this length count as touching.
     pub adjust: f64,
+    /// Friction and softness.
+    pub law: ContactLaw,
     /// Where it was written, if it was.
     pub location: Location,
 }

@@ -111,10 +111,12 @@ impl SceneReader {
         })?;
         let distance = section.read("distance", |item| self.positive(item))?;
         let adjust = section.read("adjust", |item| self.positive(item))?;
+        let law = self.law(&mut section)?;
         section.finish()?;
         Ok((auto == Some(true)).then(|| AutoContact {
             distance,
             adjust: adjust.unwrap_or(0.0),
+            law,
             location: item.location(),
         }))
     }

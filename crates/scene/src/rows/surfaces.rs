@@ -287,7 +287,7 @@ fn found(
                     adjust: auto.adjust,
                     adjusted: Vec::new(),
                     opposed: None,
-                    law: Default::default(),
+                    law: auto.law.clone(),
                     ramp: None,
                     location: auto.location.clone(),
                 }),
