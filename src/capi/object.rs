@@ -10,7 +10,7 @@ use super::nested::HostVector as GivenVector;
 use super::rows::HostRow;
 use super::stack::{fits, HostMatrix, LocalMatrix, Stack, StackStates};
 use super::surface::HostSurface;
-use super::tangential::TangentialRow;
+use super::tangential::{FrictionCounts, TangentialRow};
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, EmbeddedResult, GivenRows, SetUpWork, Torn};
 use crate::{Error, Result};
@@ -53,6 +53,8 @@ pub struct Object {
     pub at_nodes: AtNodes,
     /// The tangential rows of nodes with friction, in the present solver.
     pub tangential: Vec<TangentialRow>,
+    /// The states of these nodes on all ranks, after the last solve.
+    pub friction: FrictionCounts,
     /// Whether the slips of the last solve have been taken for those of a load step that has ended.
     pub carried: bool,
     pub bodies: usize,
@@ -91,6 +93,7 @@ impl Object {
             mortar_rows: MortarRows::default(),
             at_nodes: AtNodes::default(),
             tangential: Vec::new(),
+            friction: FrictionCounts::default(),
             carried: false,
             bodies: 0,
             view: false,

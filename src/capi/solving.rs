@@ -3,7 +3,7 @@
 use super::mortar_results::at_nodes;
 use super::nested::HostVector;
 use super::object::Object;
-use super::tangential;
+use super::tangential::{self, FrictionCounts};
 use crate::contact::{State, Step};
 use crate::embed::{Embedded, EmbeddedResult};
 use crate::Result;
@@ -36,6 +36,7 @@ impl Object {
         checked[1].take(&plain[1])?;
         let given = solver.given().unwrap_or_default();
         let at_rows = tangential::results(&self.tangential, &given);
+        self.friction = FrictionCounts::of(&self.session, &self.tangential, &at_rows);
         let (of_host, of_mortars) = at_rows.split_at(self.rows.len());
         for (row, result) in self.rows.iter_mut().zip(of_host) {
             row.solved = *result;
@@ -110,6 +111,7 @@ impl Object {
                 "  last solve: {} after {} iterations, {} steps of the contact loop\n",
                 o.status, o.iterations, o.steps
             );
+            text.extend(self.friction.line());
         }
         text
     }

@@ -7,6 +7,8 @@ use crate::substructures::{FrictionNode, Law};
 use crate::Result;
 use base::linalg::vec3::{dot, tangents, unit};
 use base::Fault;
+use parallel::exchange::sum_all;
+use petsc::Session;
 use std::ffi::c_int;
 
 /// A FetiFetiRowState of the C interface.
@@ -56,6 +58,43 @@ pub struct ContactResult {
     /// The slip since the beginning of the load step, without its elastic part.
     pub slip: [f64; 3],
     pub state: RowState,
+}
+
+/// The nodes with friction of all ranks after a solve.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FrictionCounts {
+    nodes: usize,
+    sticking: usize,
+    slipping: usize,
+}
+
+impl FrictionCounts {
+    /// The counts of the results at all rows that ranks give. Collective.
+    pub fn of(session: &Session, rows: &[TangentialRow], results: &[ContactResult]) -> Self {
+        let mut normals: Vec<usize> = rows.iter().map(|row| row.normal).collect();
+        normals.dedup();
+        let of = |state: RowState| results.iter().filter(|r| r.state == state).count();
+        let mut counts = [normals.len(), of(STICKS), of(SLIPS)].map(|n| n as f64);
+        sum_all(session.comm(), &mut counts);
+        let [nodes, sticking, slipping] = counts.map(|n| n as usize);
+        FrictionCounts {
+            nodes,
+            sticking,
+            slipping,
+        }
+    }
+
+    /// The line of FetiFetiView; none without friction.
+    pub fn line(&self) -> Option<String> {
+        let FrictionCounts {
+            nodes,
+            sticking,
+            slipping,
+        } = self;
+        let line =
+            format!("  friction: {nodes} nodes, of which {sticking} stick and {slipping} slip\n");
+        (*nodes > 0).then_some(line)
+    }
 }
 
 /// Appends the tangential rows of nodes with friction to the normal ones.

@@ -161,6 +161,54 @@ fn load_steps_are_those_of_the_program() {
     }
 }
 
+/// A block that slips as a whole in the end: friction is μ N, and no node has more than μ of its force.
+#[test]
+fn friction_can_be_asked_for() {
+    let scratch = Scratch::new("steps-friction");
+    let headers = concat!("-I", env!("FETIFETI_ROOT"), "/wrappers/step");
+    let options = [headers.to_string(), step_library()];
+    let example = "examples/embedding/friction.c";
+    let client = Program::linked_with("mpicc", &scratch, example, &options);
+    let scene = concat!(
+        env!("FETIFETI_ROOT"),
+        "/examples/embedding/slipping_block.toml"
+    );
+    let program = of_program(1, scene, &[]);
+    for ranks in [1, 2] {
+        let out = client.run(ranks, &format!("-scene {scene} -fetifeti_ksp_rtol 1e-10"));
+        assert_eq!(out.code, 0, "{}", out.all());
+        let lines: Vec<&str> = out.stdout.lines().filter(|l| l.starts_with("t ")).collect();
+        assert_eq!(lines.len(), program.len(), "{}", out.all());
+        for (line, reported) in lines.iter().zip(&program) {
+            let told = |name: &str| after(line, name).parse::<f64>().expect("a number");
+            near("normal", told("normal"), 0.2);
+            near("t", told("t"), number(&reported["t"]));
+            let friction = number(&reported["friction"][0]).abs();
+            assert!(
+                (told("friction") - friction).abs() < 1e-7,
+                "{line}, {reported}"
+            );
+            for (ours, theirs) in [("stick", "sticking"), ("slip", "slipping")] {
+                assert_eq!(told(ours), number(&reported[theirs]), "{line}, {reported}");
+            }
+            assert!(told("ratio") < 0.3 + 1e-5, "{line}");
+        }
+        let first = after(lines[0], "friction")
+            .parse::<f64>()
+            .expect("a number");
+        assert!(
+            first < 0.05 && after(lines[0], "stick") != "0",
+            "{}",
+            lines[0]
+        );
+        let last = lines.last().expect("a line");
+        assert_eq!(after(last, "stick"), "0");
+        assert_eq!(after(last, "friction"), "0.06000000");
+        // The top moves by 0.075 in a step, and the whole block with it.
+        assert!((after(last, "slid").parse::<f64>().expect("a number") - 0.075).abs() < 1e-6);
+    }
+}
+
 #[test]
 fn a_scene_without_steps_has_one() {
     let scratch = Scratch::new("steps-one");

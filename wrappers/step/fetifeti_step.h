@@ -34,6 +34,24 @@
 S*/
 typedef struct _p_FetiFetiStep *FetiFetiStep;
 
+/*E
+   FetiFetiRowState - The state of a row of contact after a solve, as in fetifeti.h
+
+   Level: beginner
+
+   Values:
++  FETIFETI_OPEN  - the sides are apart
+.  FETIFETI_HOLDS - the row holds: an equation, or contact without a force of friction
+.  FETIFETI_STICK - in contact, and the sides stick to each other
+-  FETIFETI_SLIP  - the sides slide, with the largest force of friction that the law allows
+
+.seealso: `FetiFetiStepRow`
+E*/
+#define FETIFETI_OPEN  0
+#define FETIFETI_HOLDS 1
+#define FETIFETI_STICK 2
+#define FETIFETI_SLIP  3
+
 /*S
    FetiFetiStepRow - A row between two bodies, or between a body and an obstacle, at the end of a load step
 
@@ -47,8 +65,16 @@ typedef struct _p_FetiFetiStep *FetiFetiStep;
 .  multiplier - the force along the normal with which the first body presses on the other side
 .  gap        - the remaining distance; negative where the sides overlap
 .  area       - the area of the node, so that multiplier / area is the pressure; 0 if it has none
+.  friction   - the force with which the first body drags the other side along; friction / area is the shear stress
+.  slip       - how far the first body has slid on the other side in the load step, without the elastic part of a stick
+                stiffness
 .  inequality - 1 for sides that may touch, 0 for ties and equations
--  active     - 1 where the row holds
+.  active     - 1 where the row holds
+-  state      - FETIFETI_OPEN, FETIFETI_HOLDS, FETIFETI_STICK or FETIFETI_SLIP
+
+   Note:
+   Friction and slip are 0 where there is no friction. The first body itself gets minus the friction, as it gets minus
+   the multiplier along the normal.
 
 .seealso: `FetiFetiStepGetContact()`
 S*/
@@ -56,7 +82,8 @@ typedef struct {
   PetscInt  body[2], node[2];
   PetscReal x[3], normal[3];
   PetscReal multiplier, gap, area;
-  PetscInt  inequality, active;
+  PetscReal friction[3], slip[3];
+  PetscInt  inequality, active, state;
 } FetiFetiStepRow;
 
 /*@C
@@ -290,7 +317,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiStepGetDisplacements(FetiFetiStep step, Pets
 
 /*@C
    FetiFetiStepGetContact - Gets the rows between bodies at the end of the load step that was solved last: forces and
-   gaps of contacts, forces of ties
+   gaps of contacts, friction, forces of ties
 
    Collective
 

@@ -133,3 +133,36 @@ def test_memory_is_given_back(world):
         del steps
         gc.collect()
         assert not handle
+
+
+def test_friction_of_a_step(world):
+    """A block that is moved by its top slips as a whole: friction is the coefficient times the force."""
+    text = """
+physics = "elasticity"
+[[body]]
+name = "block"
+size = [2, 1]
+elements = [16, 8]
+young = 1
+poisson = 0.3
+traction = { top = [0, -0.1] }
+dirichlet = { top = { x = 0.3 } }
+[[obstacle]]
+body = "block"
+side = "bottom"
+plane = { point = [0, 0], normal = [0, 1] }
+friction = 0.3
+[steps]
+count = 2
+dirichlet = "t"
+"""
+    with fetifeti.Scene.from_text(text).steps({"fetifeti_ksp_rtol": 1e-10}) as steps:
+        first, last = next(steps).contact, next(steps).contact
+    slips = last["state"] == fetifeti.RowState.SLIP
+    assert slips.sum() > 10 and not np.any(last["state"] == fetifeti.RowState.STICK)
+    assert np.isclose(last["multiplier"].sum(), 0.2, atol=1e-8)
+    # The block moves along +x and drags the plane along.
+    assert np.allclose(last["friction"].sum(axis=0), [0.06, 0, 0], atol=1e-7)
+    assert np.allclose(last["friction"][:, 0], 0.3 * last["multiplier"], atol=1e-7)
+    assert np.allclose(last["slip"][slips, 0], 0.15, atol=1e-6)
+    assert not np.any(first["friction"][:, 1]) and first["friction"][:, 0].sum() <= 0.06 + 1e-7

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use base::{Error, Fault, Result};
 use fetifeti::inside::c::Held;
 use fetifeti::solution::SolvedRow;
-use fetifeti::Session;
+use fetifeti::{Problem, Session, Solution};
 use scene::{checkpoint, distribution, Body, StepSolution, Stepper};
 
 use crate::rows::ContactRow;
@@ -26,6 +26,8 @@ pub struct Steps {
     /// The names of the bodies.
     pub names: Vec<CString>,
     solved: Option<StepSolution>,
+    /// Its tangential rows on this rank, whose gaps have no elastic part.
+    tangential: Vec<SolvedRow>,
     /// The name of the reason why its solve ended.
     pub reason: CString,
     /// Its rows between bodies, once they were asked for.
@@ -63,6 +65,7 @@ impl Steps {
             stepper: Some(stepper),
             names,
             solved: None,
+            tangential: Vec::new(),
             reason: CString::default(),
             rows: None,
         })
@@ -90,6 +93,7 @@ impl Steps {
             let said = format!("{what} did not converge: {status} after {iterations} iterations");
             failed = Some(Error::not_converged(said));
         }
+        self.tangential = slid(self.stepper()?.solver().problem(), &solved.solution);
         self.solved = Some(solved);
         failed.map_or(Ok(true), Err)
     }
@@ -158,13 +162,29 @@ impl Steps {
             Some(rows) => rows,
             None => {
                 let own = self.solved()?.solution.rows();
-                let mut all = SolvedRow::on_all_ranks(self.session.comm(), own);
-                all.sort_by(SolvedRow::by_place);
-                all.iter().map(ContactRow::new).collect()
+                let gathered = |own: &[SolvedRow]| {
+                    let mut all = SolvedRow::on_all_ranks(self.session.comm(), own);
+                    all.sort_by(SolvedRow::by_place);
+                    all
+                };
+                let all = gathered(own);
+                ContactRow::all(&all, &gathered(&self.tangential))
             }
         };
         Ok(self.rows.insert(found))
     }
+}
+
+/// The tangential rows of this rank, each with a gap that is less than zero by what the sides have slid: elastic slip
+/// springs back.
+fn slid(problem: &Problem, solution: &Solution) -> Vec<SolvedRow> {
+    let friction = problem.rows.iter().filter(|row| row.law.is_friction());
+    let rows = solution.tangential_rows().iter().zip(friction);
+    rows.map(|(&(mut row), given)| {
+        row.gap += given.compliance * row.multiplier;
+        row
+    })
+    .collect()
 }
 
 /// The path with these bytes.

@@ -26,8 +26,11 @@ _ROW: list[tuple[Any, ...]] = [
     ("multiplier", "f8"),
     ("gap", "f8"),
     ("area", "f8"),
+    ("friction", "f8", (3,)),
+    ("slip", "f8", (3,)),
     ("inequality", "i4"),
     ("active", "i4"),
+    ("state", "i4"),
 ]
 
 # Errors as the program has them, by PETSc's code: PETSC_ERR_NOT_CONVERGED, PETSC_ERR_ARG_WRONG, PETSC_ERR_LIB.
@@ -107,7 +110,9 @@ class LoadStep:
 
         Fields: ``body`` and ``node``, two each, -1 where there is none, as beside an obstacle; the place ``x``; the
         ``normal`` out of the first body; ``multiplier`` (a force) and ``gap`` (a length) along it; ``area`` of the
-        node, 0 if it has none; ``inequality``, False for ties; ``active``, True where the row holds.
+        node, 0 if it has none; ``friction``, the force with which the first body drags the other side along, and
+        ``slip``, how far it has slid on it in the load step; ``inequality``, False for ties; ``active``, True where
+        the row holds; ``state``, a `RowState` as of `Solver`: open, holding, sticking or slipping.
         """
         n, at = ctypes.c_int(), ctypes.c_void_p()
         call("FetiFetiStepGetContact", self._present(), ctypes.byref(n), ctypes.byref(at))
