@@ -226,6 +226,13 @@ module fetifeti
       real(c_double), value :: friction, limit, tresca, stiffness, stick_stiffness
       integer(c_int) :: ierr
     end function
+    function FetiFetiSetMortarSlip(ff, mortar, n, slip) bind(C, name="FetiFetiSetMortarSlip") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: mortar, n
+      real(c_double), intent(in), optional :: slip(*)
+      integer(c_int) :: ierr
+    end function
     function FetiFetiGetMortar(ff, mortar, n, lambda, pressure, gap, state) &
         bind(C, name="FetiFetiGetMortar") result(ierr)
       import :: c_int, c_ptr, c_double

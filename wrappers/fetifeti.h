@@ -724,7 +724,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactLaw(FetiFeti ff, PetscInt n, const
    solves are for increments of displacements, as in Newton's method, s is what remains, as gaps are: s less the
    displacement of the first side from the second one so far. Nothing is set up again.
 
-.seealso: `FetiFetiNextContactStep()`, `FetiFetiGetContactFriction()`
+.seealso: `FetiFetiNextContactStep()`, `FetiFetiGetContactFriction()`, `FetiFetiSetMortarSlip()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactSlip(FetiFeti ff, PetscInt n, PetscInt dim, const PetscReal slip[]);
 
@@ -894,10 +894,39 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, Petsc
    All is the same on all ranks, and takes the place of the law that the mortar had. Bounds and stiffnesses are per
    area: each node has its part by the area of its function.
 
-.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMortarFriction()`, `FetiFetiNextContactStep()`, `FetiFetiSetContactLaw()`
+.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMortarFriction()`, `FetiFetiSetMortarSlip()`, `FetiFetiNextContactStep()`,
+          `FetiFetiSetContactLaw()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetMortarLaw(FetiFeti ff, PetscInt mortar, PetscReal friction, PetscReal limit,
                                                  PetscReal tresca, PetscReal stiffness, PetscReal stick_stiffness);
+
+/*@
+   FetiFetiSetMortarSlip - Says where the sides of a mortar with friction stand without a slip
+
+   Collective
+
+   Input Parameters:
++  ff     - the solver
+.  mortar - number of the mortar
+.  n      - nodes that this rank gave of the first surface
+-  slip   - for each of these nodes the displacement of the first surface from the second one that counts as none, in
+            components, length n * components; NULL: this rank says nothing
+
+   Level: intermediate
+
+   Notes:
+   This is FetiFetiSetContactSlip() for surfaces: the slip of a solve is the mean of u_first - u_second that the row
+   at a node takes, less s as it is given here, along the surface. A surface that is dragged along by d in a load step
+   has d and the slip of FetiFetiGetMortarFriction() added to s before the step, in place of
+   FetiFetiNextContactStep().
+
+   Ranks that gave the same node say the same of it. A node of which no rank says anything has s = 0. Nothing is set up
+   again.
+
+.seealso: `FetiFetiSetMortarLaw()`, `FetiFetiGetMortarFriction()`, `FetiFetiNextContactStep()`,
+          `FetiFetiSetContactSlip()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetMortarSlip(FetiFeti ff, PetscInt mortar, PetscInt n, const PetscReal slip[]);
 
 /*@
    FetiFetiGetMortar - Gets the result of a mortar at the nodes of its first surface
@@ -951,7 +980,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetMortar(FetiFeti ff, PetscInt mortar, Pets
    A vector for each node, in the order of FetiFetiAddSurface(), zero without friction. States are those of
    FetiFetiGetMortar().
 
-.seealso: `FetiFetiSetMortarLaw()`, `FetiFetiGetMortar()`, `FetiFetiNextContactStep()`
+.seealso: `FetiFetiSetMortarLaw()`, `FetiFetiSetMortarSlip()`, `FetiFetiGetMortar()`, `FetiFetiNextContactStep()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiGetMortarFriction(FetiFeti ff, PetscInt mortar, PetscInt n, PetscReal force[],
                                                       PetscReal shear[], PetscReal slip[]);

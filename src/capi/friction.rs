@@ -3,6 +3,7 @@
 
 use super::handle::{alone, optional, together, HandlePointer};
 use super::laws::{ContactLaw, GivenLaw};
+use super::mortar::slips;
 use super::object::Object;
 use super::surfaces::{at_place, solved_mortar};
 use crate::Result;
@@ -161,6 +162,41 @@ pub unsafe extern "C" fn FetiFetiSetMortarLaw(
 }
 
 #[no_mangle]
+pub unsafe extern "C" fn FetiFetiSetMortarSlip(
+    ff: HandlePointer,
+    mortar: c_int,
+    n: c_int,
+    slip: *const f64,
+) -> c_int {
+    together(ff, c"FetiFetiSetMortarSlip", |o| {
+        let given = || -> Result<(usize, Vec<f64>)> {
+            let m = added(o, mortar)?;
+            let first = o.mortars[m].surfaces[0];
+            let surface = &o.surfaces[first];
+            if n as usize != surface.mine.len() {
+                return Err(Fault::Sizes.error(format!(
+                    "there are slips of {n} nodes, expected {}: as many as this rank gave of surface {first}",
+                    surface.mine.len()
+                )));
+            }
+            let all = n.saturating_mul(surface.components as c_int);
+            let slip = optional(slip, all, "slip")?.unwrap_or_default();
+            match slip.iter().find(|v| !v.is_finite()) {
+                None => Ok((m, slip.to_vec())),
+                Some(v) => Err(Fault::Wrong.error(format!(
+                    "mortar {m} has a slip of {v}, expected finite numbers"
+                ))),
+            }
+        };
+        let (m, slip) = o.session.agree(given())?;
+        let first = o.mortars[m].surfaces[0];
+        o.mortars[m].slipped = slips(&o.session, (first, &o.surfaces[first]), &slip)?;
+        o.changed.gaps = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetMortarFriction(
     ff: HandlePointer,
     mortar: c_int,
@@ -189,19 +225,27 @@ pub unsafe extern "C" fn FetiFetiGetMortarFriction(
     })
 }
 
+/// The place of a mortar that has been added.
+///
+/// # Errors
+/// A mortar that there is not.
+fn added(o: &Object, mortar: c_int) -> Result<usize> {
+    let found = usize::try_from(mortar).ok();
+    let found = found.filter(|&m| m < o.mortars.len());
+    found.ok_or_else(|| {
+        Fault::OutOfRange.error(format!(
+            "there is no mortar {mortar}, expected one of {} (from 0)",
+            o.mortars.len()
+        ))
+    })
+}
+
 /// The law of a mortar that has been added.
 ///
 /// # Errors
 /// A mortar that there is not, a tie, scalars; and those of [`ContactLaw::new`].
 fn mortar_law(o: &Object, mortar: c_int, given: &GivenLaw) -> Result<(usize, ContactLaw)> {
-    let found = usize::try_from(mortar).ok();
-    let found = found.filter(|&m| m < o.mortars.len());
-    let m = found.ok_or_else(|| {
-        Fault::OutOfRange.error(format!(
-            "there is no mortar {mortar}, expected one of {} (from 0)",
-            o.mortars.len()
-        ))
-    })?;
+    let m = added(o, mortar)?;
     let whose = || format!("mortar {m}");
     let law = ContactLaw::new(given, &whose)?;
     law.suits(o.mortars[m].law, &whose)?;

@@ -9,6 +9,7 @@ use crate::Result;
 use base::Fault;
 use bytemuck::{bytes_of, Pod, Zeroable};
 use elements::mortar::{self, reach, MortarSample, MortarSide};
+use parallel::exchange::gather_all;
 use parallel::parcels::Parcels;
 use petsc::Session;
 
@@ -167,6 +168,49 @@ impl HostSurfaces<'_> {
         out.push(facts, nodes);
         out
     }
+}
+
+/// Where the sides stand without a slip at a node of the first surface, as a rank says it.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Pod, Zeroable)]
+struct SlippedNode {
+    node: u64,
+    slip: [f64; 3],
+}
+
+/// Where the sides stand without a slip at each node of `surface`, by what ranks say of the nodes that they gave; zero
+/// where nobody says anything. Collective.
+///
+/// # Errors
+/// Ranks that say different things of a node.
+pub fn slips(
+    session: &Session,
+    (number, surface): (usize, &HostSurface),
+    given: &[f64],
+) -> Result<Vec<[f64; 3]>> {
+    let components = surface.components;
+    let nodes = surface.mine.iter().zip(given.chunks(components));
+    let sent = nodes.filter_map(|(node, along)| {
+        // 0 and -0 are one slip.
+        let slip = std::array::from_fn(|c| along.get(c).copied().unwrap_or(0.0) + 0.0);
+        let node = u64::from((*node)?);
+        Some(SlippedNode { node, slip })
+    });
+    let all = gather_all(session.comm(), &sent.collect::<Vec<_>>()).concat();
+    let mut at: BTreeMap<u64, [f64; 3]> = BTreeMap::new();
+    for SlippedNode { node, slip } in all {
+        if *at.entry(node).or_insert(slip) != slip {
+            let x = surface.side.points()[node as usize];
+            return Err(Fault::Wrong.error(format!(
+                "ranks give the node at {:?} of surface {number} different slips, expected the same",
+                &x[..surface.side.dim()]
+            )));
+        }
+    }
+    let nodes = 0..surface.dofs.len() as u64;
+    Ok(nodes
+        .map(|k| at.get(&k).copied().unwrap_or_default())
+        .collect())
 }
 
 /// The data of a mortar that must be the same on all ranks.

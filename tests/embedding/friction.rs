@@ -178,6 +178,30 @@ fn a_belt_drags() {
     near(found[1].slid, 17.0 * 0.5, 1e-7, "slid");
 }
 
+/// A surface that drags the one on it, which is held: friction is μ λ against its way, and in the second step each node
+/// slips by the whole way. FetiFetiView counts them.
+#[test]
+fn a_surface_drags() {
+    let scratch = Scratch::new("capi-friction-drag");
+    let program = client(&scratch);
+    for ranks in [1, 2] {
+        let options = "-cells 8,8 -top 0,-0.1 -friction 0.2 -second mortar -belt 0.5 -loads 1,1";
+        let out = program.run(ranks, &format!("{options} -view {TIGHT}"));
+        assert_eq!(out.code, 0, "{}", out.all());
+        let found = steps(&out);
+        assert_eq!(found.len(), 2);
+        for step in &found {
+            near(step.normal, 0.1, 1e-8, "normal");
+            near(step.friction[0], -0.02, 1e-8, "friction");
+            assert_eq!(step.states[2], 0.0);
+        }
+        let slipping = found[1].states[3];
+        near(found[1].slid, 0.5 * slipping, 1e-7, "slid");
+        let line = format!("friction: 9 nodes, of which 0 stick and {slipping} slip");
+        assert!(out.stdout.contains(&line), "{line}: {}", out.stdout);
+    }
+}
+
 #[test]
 fn mistakes_are_sentences() {
     let scratch = Scratch::new("capi-friction-wrong");
@@ -272,6 +296,10 @@ fn mistakes_are_sentences() {
         (
             format!("{mortar} -friction 0.2 -wrong number"),
             "there is no mortar 3, expected one of 1",
+        ),
+        (
+            format!("{mortar} -friction 0.2 -wrong mortar_slip"),
+            "as many as this rank gave of surface 1",
         ),
     ] {
         let out = program.run(2, &options);

@@ -7,6 +7,8 @@
      -loads 1,0.5                                 factors of load steps
      -turn 0.3                                    everything turned in the plane of the first two axes
      -belt 0.5                                    the plane moves by so much in each load step, the upper side is held
+     -manual                                      slips are added up here
+     -view                                        the solver is shown after each load step
      -second pairs, mortar                        the block is the upper one of two, joined in this way
      -wrong                                       does one thing wrong
 */
@@ -134,7 +136,7 @@ int main(int argc, char **argv)
   PetscReal  *area, *lambda, *force, *slip, *from, sums[9];
   const char *keys[5] = {"-friction", "-limit", "-tresca", "-stiffness", "-stick"};
   PetscInt    rows = 0, nodes, dim, step, k, c, n, steps = 10, three = 3, *state;
-  PetscBool   set, manual, *own = NULL;
+  PetscBool   set, manual, view, *own = NULL;
   FetiFeti    ff;
   Vec         load, scaled, u, both[2];
 
@@ -150,6 +152,7 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-turn", &block.turn, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-belt", &belt, NULL));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-manual", &manual));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-view", &view));
   for (k = 0; k < 5; k++) PetscCall(PetscOptionsGetReal(NULL, NULL, keys[k], &law[k], NULL));
   PetscCall(PetscOptionsGetRealArray(NULL, NULL, "-loads", loads, &steps, &set));
   if (!set) steps = 1;
@@ -196,6 +199,7 @@ int main(int argc, char **argv)
   PetscCall(VecDuplicate(load, &u));
   PetscCall(VecDuplicate(load, &scaled));
   if (Is(wrong, "order")) PetscCall(FetiFetiNextContactStep(ff));
+  if (Is(wrong, "mortar_slip")) PetscCall(FetiFetiSetMortarSlip(ff, 0, n + 1, from));
   if (Is(wrong, "dim")) PetscCall(FetiFetiSetContactSlip(ff, rows, 3, NULL));
   if (Is(wrong, "slip")) {
     from[1] = NAN;
@@ -206,7 +210,8 @@ int main(int argc, char **argv)
 
     Turn(block.turn, drag);
     for (k = 0; k < dim * n; k++) from[k] += slip[k] + drag[k % dim];
-    if (belt || manual) PetscCall(FetiFetiSetContactSlip(ff, rows, dim, from));
+    if (own && (belt || manual)) PetscCall(FetiFetiSetMortarSlip(ff, 0, n, from));
+    else if (belt || manual) PetscCall(FetiFetiSetContactSlip(ff, rows, dim, from));
     else if (step) PetscCall(FetiFetiNextContactStep(ff));
     PetscCall(VecCopy(load, scaled));
     PetscCall(VecScale(scaled, loads[step]));
@@ -231,6 +236,7 @@ int main(int argc, char **argv)
       sums[4 + state[k]]++;
       sums[8] += PetscSqrtReal(way);
     }
+    if (view) PetscCall(FetiFetiView(ff, NULL));
     if (second[0]) PetscCall(VecNestGetSubVec(u, 1, &both[1]));
     PetscCall(Print(&block, step, second[0] ? both[1] : u, sums));
   }

@@ -157,6 +157,13 @@ def test_friction_of_a_mortar(world):
             assert np.abs(friction.slip - slip).max() < 1e-8
             assert found.state[1] == RowState.STICK and (k or found.state[0] == RowState.SLIP)
             assert not first or np.abs(u[:4] - [0.4, 0, 0, 0]).max() < 1e-8
+        # The surface is dragged by 0.3: what sticks goes along, and its springs bear less.
+        solver.set_mortar_slip(friction.slip + [[0.7, 0], [0.3, 0]] if first else None)
+        u = solver.solve(load)
+        assert np.abs(solver.mortar_friction(mortar).force - [[0.2, 0], [0, 0]]).max() < 1e-8
+        assert not first or np.abs(u[:4] - [0.7, 0, 0.3, 0]).max() < 1e-8
+        with pytest.raises(ValueError, match="slip has the shape"):
+            solver.set_mortar_slip(np.ones((3, 2)), mortar)
 
 
 def test_mistakes_are_exceptions(world):

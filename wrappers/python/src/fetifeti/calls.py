@@ -57,6 +57,7 @@ SIGNATURES: dict[str, list[Any]] = {
     "FetiFetiAddSurface": [_P, _I, _I, _I, _I, _P, _P, _I, _P, _P, _P],
     "FetiFetiAddMortar": [_P, _I, _I, _I, _D, _D, _D, _P, _P, _P],
     "FetiFetiSetMortarLaw": [_P, _I, _D, _D, _D, _D, _D],
+    "FetiFetiSetMortarSlip": [_P, _I, _I, _P],
     "FetiFetiGetMortar": [_P, _I, _I, _P, _P, _P, _P],
     "FetiFetiGetMortarFriction": [_P, _I, _I, _P, _P, _P],
     "FetiFetiResetMortar": [_P],

@@ -139,6 +139,22 @@ class Surfaces:
         """
         call("FetiFetiSetMortarLaw", self._ff, number, friction, limit, tresca, stiffness, stick_stiffness)
 
+    def set_mortar_slip(self, slip: Any = None, number: int = 0) -> None:
+        """Says where the sides of a mortar with friction stand without a slip, in place of `next_contact_step`.
+        Collective.
+
+        Parameters
+        ----------
+        slip : array_like, shape (n, components), optional
+            For each node that this rank gave of the first surface the displacement of this surface from the other one
+            that counts as none: slips so far, and the way of a surface that drags; left out: this rank says nothing.
+        number : int
+            The mortar.
+        """
+        shape = self._surfaces[self._first(number)[0]]
+        slip = None if slip is None else reals(slip, "slip", shape)
+        call("FetiFetiSetMortarSlip", self._ff, number, shape[0], slip)
+
     def mortar_friction(self, number: int = 0) -> MortarFriction:
         """Friction of a mortar at the nodes that this rank gave of its first surface; `mortar` has their states."""
         from .solver import MortarFriction
