@@ -216,6 +216,36 @@ fn clearances_and_spring_constants_are_those_of_the_deck() {
     check("across", &across, &[[free, -3.3], [-free, 3.3]]);
 }
 
+/// The ground is printed with its motion and with the force that holds it, normal force and friction, as CalculiX does.
+#[test]
+fn the_ground_has_motion_and_force() {
+    let scratch = Scratch::new("deck_gaps_printed");
+    let facing = format!("{GROUND}{}", gaps(true));
+    let asked = "*NODE PRINT,NSET=FACING\nU,RF\n*END STEP\n";
+    let steps = step(3.3, 10.0).replace("*END STEP\n", asked);
+    let held = "FACING,1,1,1e-3\nFACING,2,3\n";
+    let deck = bar(&facing, "0.,0.,0.,1.\n*FRICTION\n.3\n", held, &steps);
+    let (file, out) = (scratch.file("bar.inp", &deck), scratch.path("out"));
+    let run = run_fetifeti(2, &["solve", &file, "--out", &out]);
+    assert_eq!(run.code, 0, "{}", run.all());
+    let text = std::fs::read_to_string(format!("{out}/bar.dat")).expect("tables");
+    let tables = read_dat(&text);
+    let of = |force: bool| {
+        let is_force = |q: &DatQuantity| *q != DatQuantity::Displacement;
+        let mut own = tables.iter().filter(|t| t.set == "FACING");
+        own.find(|t| is_force(&t.quantity) == force)
+            .expect("a table")
+    };
+    // The bar sticks to the ground, which drags it by 1e-3. It bears 0.5 of the pull, and friction less than 3.
+    for row in &of(false).rows {
+        assert_eq!(row.vector, [1e-3, 0.0, 0.0]);
+    }
+    for row in &of(true).rows {
+        let away = (0..3).map(|d| row.vector[d] - [-2.8 / 4.0, 0.0, 2.5][d]);
+        assert!(away.fold(0.0, |m: f64, x| m.max(x.abs())) < 1e-5, "{row:?}");
+    }
+}
+
 #[test]
 fn gaps_without_a_held_ground_are_refused() {
     let facing = format!("{GROUND}{}", gaps(true));

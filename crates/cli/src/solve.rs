@@ -171,6 +171,10 @@ fn solve(
     report
         .warnings
         .extend(smoothed::warnings(scene, &course.rows));
+    let sliding = match deck {
+        Some(_) => SolvedRow::on_all_ranks(session.comm(), solution.tangential_rows()),
+        None => Vec::new(),
+    };
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     if !scene.probes.is_empty() || asked.is_some() {
         let values = NodalValues::displacements(session, scene, solver, solution, course.step)?;
@@ -186,13 +190,14 @@ fn solve(
         if let (0, Some(deck)) = (session.rank(), &mut deck) {
             let displacement = |at: BodyNode| values.at(at.body, at.node);
             let force = |at: BodyNode| forces.as_ref().map_or([0.0; 3], |f| f.at(at.body, at.node));
-            let tables = deck.deck.tables(deck.step, &displacement, &force);
+            let rows = course.rows.iter().chain(&sliding);
+            let of_deck = deck.deck;
+            let tables = of_deck.tables(deck.step, (scene, rows), &displacement, &force);
             deck.printed.extend(tables.into_iter().map(NodePrint::new));
         }
     }
     if let Some(deck) = deck {
-        let slid = SolvedRow::on_all_ranks(session.comm(), solution.tangential_rows());
-        deck.slid.add(scene, &slid);
+        deck.slid.add(scene, &sliding);
         report.node_print.clone_from(&deck.printed);
     }
     if let Some(dir) = &destination.out {

@@ -8,15 +8,18 @@ use std::collections::BTreeMap;
 use super::bodies::axis;
 use super::joints::at;
 use super::numbers::DeckNumbering;
+use crate::checked::Scene;
 use crate::model::body::BodySpec;
 use crate::model::friction::{ContactLaw, FrictionSpec};
 use crate::model::joints::{ContactSpec, Extent, ObstacleSpec, OpposedNodes, PairSelector};
 use crate::model::profile::Profile;
 use crate::model::rigid::Rigid;
+use crate::rows::obstacles::Obstacle;
 use base::linalg::vec3::{dot, minus, norm};
 use base::Result;
 use deck::{Deck, Gap, GapElement, Overclosure};
-use fetifeti::problem::BodyNode;
+use fetifeti::problem::{BodyNode, RowSource};
+use fetifeti::solution::SolvedRow;
 
 /// Components of a direction that are rounding.
 const NOTHING: f64 = 1e-12;
@@ -98,7 +101,7 @@ pub(super) fn of(
                 extent: Extent::Nodes(nodes.into_iter().map(|[node, _]| node).collect()),
                 below: None,
                 above: None,
-                rigid: Some(Rigid::Behind { normal }),
+                rigid: Some(Rigid::Behind { normal, ground }),
                 surface: None,
                 gap: Profile::constant(gap.clearance),
                 motion: motion(deck, gap, (ground, normal), law.friction.is_some(), step)?,
@@ -208,17 +211,30 @@ fn law(deck: &Deck, gap: &Gap, step: usize) -> ContactLaw {
     }
 }
 
-/// A sentence on ground nodes of which a table is asked.
-pub(super) fn notes(deck: &Deck, numbers: &DeckNumbering) -> Option<String> {
-    let elements = deck.gaps.iter().flat_map(|gap| &gap.elements);
-    let nodes = elements.flat_map(|e| e.nodes);
-    let mut ground: Vec<u32> = nodes.filter(|&k| numbers.node(k).is_none()).collect();
-    ground.sort_unstable();
-    let printed = deck.steps.iter().flat_map(|s| &s.prints);
-    let asked = |p: &&deck::NodePrint| p.nodes.iter().any(|k| ground.binary_search(k).is_ok());
-    let print = printed.into_iter().find(asked)?;
-    Some(format!(
-        "{}: *NODE PRINT: nodes that only gap elements have are printed without motion and force",
-        deck.files.at(print.place)
-    ))
+/// The motions of ground nodes, and the forces that hold them: those on the bodies, by these normal and tangential
+/// rows. Both are by the nodes of the deck.
+pub(super) fn on_ground<'r>(
+    scene: &Scene,
+    rows: impl Iterator<Item = &'r SolvedRow>,
+    motions: &mut [[f64; 3]],
+    forces: &mut [[f64; 3]],
+) {
+    let ground = |obstacle: &Obstacle| match obstacle.rigid {
+        Some(Rigid::Behind { ground, .. }) => Some(ground as usize),
+        _ => None,
+    };
+    for obstacle in &scene.obstacles {
+        if let Some(k) = ground(obstacle) {
+            motions[k] = obstacle.motion;
+        }
+    }
+    for row in rows {
+        let RowSource::Obstacle(o) = row.label.source else {
+            continue;
+        };
+        if let Some(k) = ground(&scene.obstacles[o]) {
+            let along = row.normal().into_iter();
+            (forces[k].iter_mut().zip(along)).for_each(|(f, n)| *f -= row.multiplier * n);
+        }
+    }
 }

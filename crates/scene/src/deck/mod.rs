@@ -25,6 +25,7 @@ use deck::{Deck, ElementModel};
 use elements::cell::{Cure, Plane};
 use elements::form::{Form, Physics};
 use fetifeti::problem::BodyNode;
+use fetifeti::solution::SolvedRow;
 use mesh::bytes;
 use numbers::DeckNumbering;
 
@@ -127,8 +128,7 @@ impl DeckScenes {
         let changes = self.changes.iter().cloned();
         let all = ignored.chain(replaced).chain(placed).chain(unused);
         let exchanged = carriers::notes(deck, &self.exchanged);
-        let ground = gaps::notes(deck, &self.numbers);
-        all.chain(changes).chain(exchanged).chain(ground).collect()
+        all.chain(changes).chain(exchanged).collect()
     }
 
     /// Number of steps, ≥ 1.
@@ -213,11 +213,12 @@ impl DeckScenes {
         (!prints.is_empty()).then(|| prints.iter().any(force))
     }
 
-    /// The tables that step `step` asks for, a list for each *NODE PRINT; nodes that no element has do not move and
-    /// bear no force.
-    pub fn tables(
+    /// The tables that step `step` asks for, a list for each *NODE PRINT, by its scene and all of its normal and
+    /// tangential rows. Nodes that no element has do not move and bear no force, but for those that are ground.
+    pub fn tables<'r>(
         &self,
         step: usize,
+        (scene, rows): (&Scene, impl Iterator<Item = &'r SolvedRow>),
         displacement: &dyn Fn(BodyNode) -> [f64; 3],
         force: &dyn Fn(BodyNode) -> [f64; 3],
     ) -> Vec<Vec<deck::DatTable>> {
@@ -228,11 +229,12 @@ impl DeckScenes {
                 .map(|k| numbers.node(k).map_or([0.0; 3], of))
                 .collect()
         };
-        let mut forces = all(force);
+        let (mut motions, mut forces) = (all(displacement), all(force));
+        gaps::on_ground(scene, rows, &mut motions, &mut forces);
         if self.deck.model() == ElementModel::Axisymmetric {
             forces.iter_mut().flatten().for_each(|f| *f *= SECTOR);
         }
-        self.deck.tables(step, &all(displacement), &forces)
+        self.deck.tables(step, &motions, &forces)
     }
 }
 

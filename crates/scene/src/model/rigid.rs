@@ -16,6 +16,8 @@ pub enum Rigid {
     Behind {
         /// The unit normal, towards the side that is free.
         normal: [f64; 3],
+        /// Which ground it is: a point of the file of the bodies that no cell has.
+        ground: u32,
     },
     /// A cylinder (a disc in the plane); a sphere has no axis.
     Round {
@@ -36,7 +38,7 @@ impl Rigid {
     pub fn distance(&self, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
         match *self {
             Rigid::Plane { point, normal } => Some((dot(minus(x, point), normal), normal)),
-            Rigid::Behind { normal } => Some((0.0, normal)),
+            Rigid::Behind { normal, .. } => Some((0.0, normal)),
             Rigid::Round {
                 centre,
                 axis,
