@@ -9,6 +9,7 @@ mod dense;
 mod equal;
 mod forms;
 mod operators;
+mod springs;
 mod traffic;
 mod turn;
 mod weights;

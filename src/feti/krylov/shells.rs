@@ -71,9 +71,11 @@ pub fn preconditioner(system: &Rc<DualSystem>) -> Result<Mat> {
     matrix(shell(system, DualSystem::precondition, None))
 }
 
-/// E = Π P as a matrix, with Π the orthogonal projection onto range B. From F (I − Π) = 0 and P (I − Π) = I − Π it
-/// follows that E is a projection with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With
-/// deflation the matrix is E P_2 E. Its range is the F-orthogonal complement of W in that space. Collective.
+/// E = Π P as a matrix, with Π the orthogonal projection onto range B; with springs in the rows the projection of
+/// [`Dual::off_kernel`](crate::feti::operators::dual::Dual::off_kernel). From F (I − Π) = 0 and P (I − Π) = I − Π it
+/// follows that E is a projection with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range, V ∩ range B without
+/// springs. With deflation the matrix is E P_2 E. Its range is the F-orthogonal complement of W in that space.
+/// Collective.
 pub fn range(system: &Rc<DualSystem>) -> Result<Mat> {
     let transpose = Some(DualSystem::to_range_transpose as Product);
     matrix(shell(system, DualSystem::to_range, transpose))

@@ -290,16 +290,17 @@ impl DualSystem {
         dual.p_transpose(y) /*          y ← Pᵀ y         */
     }
 
-    /// y ← E x. E = Π P with the orthogonal projection Π onto range B; E P_2 E if something is deflated.
+    /// y ← E x. E = Π P with the projection Π along the kernel of F + C, the orthogonal one onto range B without
+    /// springs; E P_2 E if something is deflated.
     pub(super) fn to_range(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         self.x.copy_from(x)?;
         dual.p(&self.x)?;
-        dual.stiffness.range_projection(&self.x, y)?;
+        dual.off_kernel(&self.x, y)?;
         if self.deflation.borrow().is_some() {
             self.p2(y)?;
             self.x.copy_from(y)?;
-            dual.stiffness.range_projection(&self.x, y)?;
+            dual.off_kernel(&self.x, y)?;
         }
         Ok(())
     }
@@ -308,12 +309,12 @@ impl DualSystem {
     pub(super) fn to_range_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         if self.deflation.borrow().is_some() {
-            dual.stiffness.range_projection(x, &self.x)?;
+            dual.off_kernel_transpose(x, &self.x)?;
             self.p2_transpose(&self.x)?;
             dual.p_transpose(&self.x)?;
-            dual.stiffness.range_projection(&self.x, y)?;
+            dual.off_kernel_transpose(&self.x, y)?;
         } else {
-            dual.stiffness.range_projection(x, y)?;
+            dual.off_kernel_transpose(x, y)?;
         }
         dual.p_transpose(y)
     }

@@ -139,6 +139,29 @@ impl Dual {
         self.preconditioner.apply_many(&self.stiffness, xs, ys)
     }
 
+    /// y ← R x with the orthogonal projection R onto range B; with springs in the rows y ← (R + X C (I − R)) x, which
+    /// keeps the multipliers without forces that springs feel. Collective.
+    pub fn off_kernel(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.stiffness.range_projection(x, y)?;
+        if let Some(springs) = self.stiffness.springs() {
+            springs.put_back(&x.array()?, &mut y.array_mut()?);
+        }
+        Ok(())
+    }
+
+    /// The transpose of [`off_kernel`](Self::off_kernel): y ← (R + (I − R) C X) x. Collective.
+    pub fn off_kernel_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.stiffness.range_projection(x, y)?;
+        if let Some(springs) = self.stiffness.springs() {
+            let (felt, inside) = (self.multipliers()?, self.multipliers()?);
+            springs.felt(&x.array()?, &mut felt.array_mut()?);
+            self.stiffness.range_projection(&felt, &inside)?;
+            y.axpy(1.0, &felt)?;
+            y.axpy(-1.0, &inside)?;
+        }
+        Ok(())
+    }
+
     /// x ← P x.
     pub fn p(&self, x: &PetscVec) -> Result<()> {
         let _timed = self.events[2].scope()?;

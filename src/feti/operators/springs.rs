@@ -13,6 +13,9 @@
 //! ```text
 //!     (F + C)⁻¹ ≈ Π M⁻¹ Πᵀ + X
 //! ```
+//!
+//! With the orthogonal projection R onto range B, R + X C (I − R) is a projection, too. It takes out the multipliers on
+//! which F + C is zero and no others: those without forces that no spring feels.
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::scaling;
@@ -85,6 +88,27 @@ impl Springs {
             let image = product(x, rows, |i| r[i] - self.compliance[i] * z[i]);
             for (&i, v) in rows.iter().zip(&image) {
                 z[i] += v;
+            }
+        }
+    }
+
+    /// y ← y + X C (λ − y).
+    pub fn put_back(&self, lambda: &[f64], y: &mut [f64]) {
+        for (rows, x) in &self.dependent {
+            let image = product(x, rows, |i| self.compliance[i] * (lambda[i] - y[i]));
+            for (&i, v) in rows.iter().zip(&image) {
+                y[i] += v;
+            }
+        }
+    }
+
+    /// out ← C X λ.
+    pub fn felt(&self, lambda: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for (rows, x) in &self.dependent {
+            let image = product(x, rows, |i| lambda[i]);
+            for (&i, v) in rows.iter().zip(&image) {
+                out[i] = self.compliance[i] * v;
             }
         }
     }
