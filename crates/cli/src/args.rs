@@ -270,7 +270,7 @@ pub enum StudyName {
     Hertz,
     /// Problems that are hard for the method against direct solutions; exit code 1 where an answer is wrong
     HardCases,
-    /// Condition numbers with M_D and M_C over H_b/H_s and H_s/h; -fetifeti_spectrum: exact ones too
+    /// Condition numbers with M_D and M_C over H_b/H_s and H_s/h, and with friction; -fetifeti_spectrum: exact ones too
     Kappa,
     /// Seconds over ranks and bodies by phase, messages, and a model for up to 100 000 ranks of a network with
     /// -scaling_alpha SECONDS -scaling_beta SECONDS_PER_BYTE

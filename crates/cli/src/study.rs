@@ -164,9 +164,18 @@ impl StudyTask<'_> {
             .spectrum;
         let mut progress = self.progress();
         let report = kappa::run(self.session, self.quick, self.case(), exact, &mut progress)?;
-        let table = kappa::table(&report);
-        let text = table.to_string();
-        self.finish(&report, &text, |dir| tables(dir, &[("kappa", table)]))
+        let all = [
+            ("kappa", !report.rows.is_empty(), kappa::table(&report)),
+            (
+                "kappa-friction",
+                !report.friction.is_empty(),
+                kappa::friction::table(&report.friction),
+            ),
+        ];
+        let shown = all.into_iter().filter(|(_, filled, _)| *filled);
+        let shown: Vec<(&str, Table)> = shown.map(|(stem, _, table)| (stem, table)).collect();
+        let texts: Vec<String> = shown.iter().map(|(_, table)| table.to_string()).collect();
+        self.finish(&report, &texts.join("\n"), |dir| tables(dir, &shown))
     }
 
     fn scaling(&self, petsc: &[String]) -> Result<()> {

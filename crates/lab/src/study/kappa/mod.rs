@@ -4,9 +4,16 @@
 //! The domain is the unit square or cube, held all round, of two tied bodies in each direction. κ is the estimate of CG
 //! (Lanczos) at a relative residual of 1e-11, a lower bound that has converged to three digits by then. `exact` is
 //! SLEPc's value, where it was asked for.
+//!
+//! A second table has contact with friction beside ties and contact without it ([`friction`]).
+
+pub mod friction;
+pub mod scenes;
 
 use serde::{Deserialize, Serialize};
 
+use self::friction::{ContactLaw, FrictionRow};
+use self::scenes::{FrictionScene, SCENES};
 use base::{Error, Result};
 use fetifeti::settings::{Adaptive, MethodSettings, PcType};
 use fetifeti::FetiFeti;
@@ -106,6 +113,36 @@ pub struct KappaReport {
     pub study: String,
     /// The results by family and size.
     pub rows: Vec<KappaRow>,
+    /// The results with contact, by scene, size and law.
+    pub friction: Vec<FrictionRow>,
+}
+
+/// A case of the study.
+#[derive(Clone, Copy)]
+enum Case {
+    Tied(KappaFamily),
+    Contact(FrictionScene),
+}
+
+impl Case {
+    fn name(&self) -> &'static str {
+        match self {
+            Case::Tied(family) => family.name,
+            Case::Contact(scene) => scene.name,
+        }
+    }
+
+    /// How many of its sizes are measured.
+    fn count(&self, quick: bool) -> usize {
+        let [some, all] = match self {
+            Case::Tied(family) => [family.quick, family.sizes.len()],
+            Case::Contact(scene) => [scene.quick, scene.sizes.len()],
+        };
+        match quick {
+            true => some,
+            false => all,
+        }
+    }
 }
 
 /// Runs the study; `exact` asks for the exact spectra, too (minutes on large grids). Collective.
@@ -119,22 +156,45 @@ pub fn run(
     exact: bool,
     progress: &mut dyn FnMut(&str),
 ) -> Result<KappaReport> {
-    let mut rows = Vec::new();
-    for (of, family) in super::numbered(super::chosen(FAMILIES.to_vec(), |f| f.name, only)?) {
-        let n = if quick {
-            family.quick
-        } else {
-            family.sizes.len()
-        };
-        for &[subdomains, elements] in &family.sizes[..n] {
-            progress(&format!("{of}, {}, {subdomains} x {elements}", family.name));
-            rows.push(grid(session, &family, [2, subdomains, elements], exact)?);
+    let (mut rows, mut friction) = (Vec::new(), Vec::new());
+    let tied = FAMILIES.into_iter().map(Case::Tied);
+    let cases = tied.chain(SCENES.into_iter().map(Case::Contact)).collect();
+    for (of, case) in super::numbered(super::chosen(cases, |c: &Case| c.name(), only)?) {
+        for size in 0..case.count(quick) {
+            match case {
+                Case::Tied(family) => {
+                    let [subdomains, elements] = family.sizes[size];
+                    progress(&format!("{of}, {}, {subdomains} x {elements}", family.name));
+                    rows.push(grid(session, &family, [2, subdomains, elements], exact)?);
+                }
+                Case::Contact(scene) => {
+                    let elements = scene.sizes[size];
+                    progress(&format!("{of}, {}, {elements}", scene.name));
+                    let laws = laws(size == 0 && !quick);
+                    friction.extend(friction::rows(session, &scene, elements, &laws, exact)?);
+                }
+            }
         }
     }
     Ok(KappaReport {
         study: "kappa".into(),
         rows,
+        friction,
     })
+}
+
+/// The laws that scenes are solved with. The stiffness of springs is 1, Young's modulus by a length of 1, or
+/// varies.
+fn laws(varied: bool) -> Vec<ContactLaw> {
+    let stiffness: &[f64] = if varied { &[100.0, 1.0, 0.1] } else { &[1.0] };
+    let rigid = [
+        ContactLaw::Tied,
+        ContactLaw::Frictionless,
+        ContactLaw::Friction,
+    ];
+    let soft = stiffness.iter().map(|&k| ContactLaw::Soft(k));
+    let elastic = stiffness.iter().map(|&k| ContactLaw::ElasticSlip(k));
+    rigid.into_iter().chain(soft).chain(elastic).collect()
 }
 
 /// One grid of `bodies` bodies in each direction, of `subdomains` subdomains of `elements` elements. Collective.
