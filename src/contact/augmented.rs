@@ -1,4 +1,5 @@
-//! A = Pᵀ F P + ϱ (I − P) on all candidate rows, and its preconditioner inside a face.
+//! A = Pᵀ (F + C) P + ϱ (I − P) on all candidate rows, and its preconditioner inside a face. C is the compliance of the
+//! rows themselves, zero as a rule.
 //!
 //! The variables are x = S⁻¹ λ with S² = diag(B_D diag(K) B_Dᵀ), so that rows between stiff and soft bodies have the
 //! same weight. Rows that are no candidates have S = 0. Let F be the rows that are free in a face, G_F the rows of G
@@ -13,7 +14,9 @@
 
 use std::rc::Rc;
 
+use super::disc::Disc;
 use super::force_balance::ForceBalance;
+use super::friction::node::Node;
 use super::modes::Face;
 use super::mprgp::BoundedQuadratic;
 use super::settings::ContactSettings;
@@ -43,8 +46,13 @@ pub struct Augmented<'a> {
 }
 
 impl<'a> Augmented<'a> {
-    /// The operator on all candidate rows, all of which must hold in the dual operators now. Collective.
-    pub fn new(method: &'a LinearMethod, settings: &ContactSettings) -> Result<Augmented<'a>> {
+    /// The operator on all candidate rows, all of which must hold in the dual operators now; `nodes` are those with
+    /// friction. Collective.
+    pub fn new(
+        method: &'a LinearMethod,
+        settings: &ContactSettings,
+        nodes: &[Node],
+    ) -> Result<Augmented<'a>> {
         let tuning = &settings.tuning;
         let comm = method.session.comm();
         let dual = method.dual();
@@ -52,9 +60,18 @@ impl<'a> Augmented<'a> {
         let mut diagonal = natural.superlumped(&method.problem, stiffness)?;
         // Where several bodies meet, B_D shares a jump among rows that depend on each other. Alone, each of them is as
         // stiff as its nodes.
-        let nodes = stiffness.compliance_of_rows(&method.problem)?;
-        for (d, c) in diagonal.iter_mut().zip(&nodes).filter(|(_, c)| **c > 0.0) {
+        let give = stiffness.compliance_of_rows(&method.problem)?;
+        for (d, c) in diagonal.iter_mut().zip(&give).filter(|(_, c)| **c > 0.0) {
             *d = 1.0 / c;
+        }
+        for (d, c) in diagonal.iter_mut().zip(&stiffness.jump.compliance) {
+            *d /= 1.0 + *d * c;
+        }
+        // A disc stays round where both its rows have the same scale.
+        for node in nodes {
+            let least = node.tangential.iter().map(|&i| diagonal[i]);
+            let least = least.fold(f64::INFINITY, f64::min);
+            node.tangential.iter().for_each(|&i| diagonal[i] = least);
         }
         let scale: Vec<f64> = (0..diagonal.len())
             .map(|i| {
@@ -98,7 +115,15 @@ impl<'a> Augmented<'a> {
             .collect()
     }
 
-    /// y ← S F S x.
+    /// The disc of a node in scaled variables, where its bound is `g`.
+    pub fn disc(&self, node: &Node, g: f64) -> Disc {
+        Disc {
+            rows: node.tangential.clone(),
+            radius: g / self.scale[node.tangential[0]],
+        }
+    }
+
+    /// y ← S (F + C) S x.
     fn f(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         let lambda = self.unscaled(x);
         self.lambda.array_mut()?.copy_from_slice(&lambda);
@@ -108,10 +133,15 @@ impl<'a> Augmented<'a> {
         for ((y, f), s) in y.iter_mut().zip(&*self.image.array()?).zip(&self.scale) {
             *y = f * s;
         }
+        let rows = dual.stiffness.jump.compliance.iter().zip(&lambda);
+        for ((y, s), (c, l)) in y.iter_mut().zip(&self.scale).zip(rows) {
+            *y += s * c * l;
+        }
         Ok(())
     }
 
-    /// The largest eigenvalue of Pᵀ F P by the power method. The method gives a lower bound; a few per cent are added.
+    /// The largest eigenvalue of Pᵀ (F + C) P by the power method. The method gives a lower bound; a few per cent are
+    /// added.
     fn norm(&mut self, steps: usize) -> Result<f64> {
         let method = self.method;
         let comm = method.session.comm();
@@ -148,7 +178,7 @@ impl BoundedQuadratic for Augmented<'_> {
         let mut inside = x.to_vec();
         let c = balance.project(comm, &mut inside); /*    P x             */
         self.f(&inside, y)?;
-        balance.project(comm, y); /*                      Pᵀ F P x        */
+        balance.project(comm, y); /*                      Pᵀ (F + C) P x  */
         balance.add(self.rho, &c, y); /*                  + ϱ (I − P) x   */
         Ok(())
     }

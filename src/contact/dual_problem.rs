@@ -4,12 +4,13 @@
 //! |---|---|
 //! | [`ActiveSet`] | the equations on the set that multipliers and gaps ask for |
 //! | [`AugmentedLagrangian`] | semismooth Newton steps on springs, and trials of the sets that they find |
-//! | [`Smalbe`] | bound-constrained problems by MPRGP, and trials of the sets that they find |
+//! | [`Smalbe`] | problems with bounds and discs by MPRGP, and trials of the sets and states that they find |
 //! | [`Friction`] | the equations on the rows that hold and the nodes that stick, with given forces along slips |
 //! | [`FrictionLagrangian`] | semismooth Newton steps with discs, and trials of the states that they find |
 //!
-//! A trial wraps a strategy: it is an [`ActiveSet`] that is followed for as long as it comes nearer. A new strategy is
-//! a file with a [`Strategy`](super::strategy::Strategy), and a line in [`begin`](DualProblem::begin).
+//! A trial wraps a strategy: it is an [`ActiveSet`], or with friction a [`Friction`], followed for as long as it comes
+//! nearer. A new strategy is a file with a [`Strategy`](super::strategy::Strategy), and a line in
+//! [`begin`](DualProblem::begin).
 
 use super::active_set::ActiveSet;
 use super::certified_signs::{signs, Signs};
@@ -25,7 +26,7 @@ use super::state::{Observer, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
-use crate::{Error, Result};
+use crate::Result;
 
 /// Solves the problem with its inequalities. Returns the solution and the steps of the loop. After an error the rows of
 /// the method hold that held before. Collective.
@@ -41,14 +42,6 @@ pub(crate) fn solve(
     method.with_rows_kept(|| {
         Existence::new(method, &method.dual(), settings).of_gaps()?;
         let friction = friction::is_asked_for(method);
-        if friction && settings.kind == ContactType::Smalbe {
-            return Err(Error::input(format!(
-                "-fetifeti_contact_type is {} in a problem with friction or soft contact, expected {} or {}",
-                settings.kind.name(),
-                ContactType::ActiveSet.name(),
-                ContactType::AugmentedLagrangian.name()
-            )));
-        }
         let problem = DualProblem {
             method,
             settings,
@@ -90,25 +83,23 @@ impl InnerProblem for DualProblem<'_> {
             Begin::HandOver(state) => (ContactType::AugmentedLagrangian, Some(state)),
             Begin::Again(state) => (ContactType::ActiveSet, Some(state)),
         };
-        if self.friction {
-            if kind == ContactType::AugmentedLagrangian {
-                let state = start.unwrap_or_else(|| State::cold(&method.dual().stiffness.jump));
-                return Ok(Box::new(FrictionLagrangian::new(method, settings, state)?));
+        let state = |start: Option<State>| {
+            start.unwrap_or_else(|| State::cold(&method.dual().stiffness.jump))
+        };
+        Ok(match (kind, self.friction) {
+            (ContactType::ActiveSet, false) => {
+                Box::new(ActiveSet::new(method, settings, start.as_ref())?)
             }
-            let friction = Friction::new(method, settings, start.as_ref())?;
-            return Ok(Box::new(friction));
-        }
-        let cold = || State::cold(&method.dual().stiffness.jump);
-        Ok(match kind {
-            ContactType::ActiveSet => Box::new(ActiveSet::new(method, settings, start.as_ref())?),
-            ContactType::AugmentedLagrangian => {
-                let state = start.unwrap_or_else(cold);
-                Box::new(AugmentedLagrangian::new(method, settings, state)?)
+            (ContactType::ActiveSet, true) => {
+                Box::new(Friction::new(method, settings, start.as_ref())?)
             }
-            ContactType::Smalbe => {
-                let state = start.unwrap_or_else(cold);
-                Box::new(Smalbe::new(method, settings, state)?)
+            (ContactType::AugmentedLagrangian, false) => {
+                Box::new(AugmentedLagrangian::new(method, settings, state(start))?)
             }
+            (ContactType::AugmentedLagrangian, true) => {
+                Box::new(FrictionLagrangian::new(method, settings, state(start))?)
+            }
+            (ContactType::Smalbe, _) => Box::new(Smalbe::new(method, settings, state(start))?),
         })
     }
 

@@ -7,8 +7,8 @@
 //! The loop (`driver`) calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are
 //! factored once. There are three strategies (`dual_problem`): a primal-dual active set (`active_set`); damped Newton
 //! steps on the augmented Lagrangian (`lagrangian`), to which the others hand over if their sets wander; and SMALBE
-//! with MPRGP (`smalbe`). With friction the first two know nodes that stick and slip (`friction`). Sets that they
-//! propose are repaired (`repairs`): rows are put back that hold bodies, bodies are placed, dependent rows agree.
+//! with MPRGP (`smalbe`). With friction they know nodes that stick and slip (`friction`). Sets that they propose are
+//! repaired (`repairs`): rows are put back that hold bodies, bodies are placed, dependent rows agree.
 //! Whether there is a solution at all is asked in one place (`existence`).
 
 mod active_set;
@@ -21,6 +21,7 @@ mod disc;
 pub mod driver;
 mod dual_problem;
 mod existence;
+mod feasible_set;
 mod force_balance;
 mod friction;
 mod inner;
@@ -37,6 +38,8 @@ mod repairs;
 mod semismooth_newton;
 mod settings;
 mod smalbe;
+mod smalbe_iteration;
+mod smalbe_trial;
 mod state;
 mod strategy;
 mod tuning;

@@ -1,17 +1,26 @@
-//! MPRGP: modified proportioning with reduced gradient projections, for min ½ xᵀA x − bᵀx with x ≥ l (Dostál 2009,
-//! chapter 5), with a preconditioner in the free face.
+//! MPRGP: modified proportioning with reduced gradient projections, for min ½ xᵀA x − bᵀx over half-lines x ≥ l (Dostál
+//! 2009, chapter 5) and discs (Dostál and Kozubek 2012), with a preconditioner in the free face.
 //!
 //! Conjugate gradients run inside a face. They end if the next step would leave the feasible set, and an expansion step
 //! follows (gradient projection with a fixed length). They also end if the gradient says that the face is wrong, and a
-//! proportioning step leaves the face.
+//! proportioning step leaves the face, or goes along the edges of discs.
+//!
+//! Half-lines leave along β, as far as the function falls. With discs the entries that are not free take a projected
+//! step d = Π(x − τ g) − x: on an edge it has the curvature of the edge in it. By the projection gᵀd ≤ −‖d‖²/τ, so that
+//! the function falls for κ τ < 2 with the curvature κ = dᵀA d/‖d‖² along d. This is so for τ = ᾱ < 2/‖A‖, as in the
+//! proof, and mostly for the far longer τ = 1/κ with κ of the last step (Barzilai and Borwein 1988), which is tried.
 
 use mpi::topology::SimpleCommunicator;
 
+use super::feasible_set::FeasibleSet;
 use super::tuning::Tuning;
 use crate::Result;
-use parallel::exchange::{lowest, total};
+use parallel::exchange::{any, lowest, total};
 
-/// The quadratic function and its bounds; vectors are this rank's part.
+/// Projected steps of length τ are short enough if the curvature is at most this over τ.
+const SHORT: f64 = 1.9;
+
+/// The quadratic function; vectors are this rank's part.
 pub trait BoundedQuadratic {
     /// y ← A x.
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()>;
@@ -21,15 +30,13 @@ pub trait BoundedQuadratic {
     fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
-/// The ranks, the bounds and the step length: data that do not change.
+/// The ranks, the feasible set and the step length: data that do not change.
 pub struct Setting<'a> {
     /// The ranks.
     pub comm: &'a SimpleCommunicator,
-    /// l: −∞ for entries without a bound.
-    pub lower: &'a [f64],
-    /// Entries that do not change.
-    pub fixed: &'a [bool],
-    /// Length of the expansion step, at most 2/‖A‖.
+    /// Ω.
+    pub set: &'a FeasibleSet,
+    /// ᾱ: length of the expansion step, at most 2/‖A‖.
     pub length: f64,
     /// Γ, and which curvature is none.
     pub tuning: &'a Tuning,
@@ -45,35 +52,23 @@ pub struct MprgpResult {
     pub products: usize,
 }
 
+impl MprgpResult {
+    /// x ← x − t p inside the set, and the gradient with it; `ap` is A p.
+    fn go(&mut self, set: &FeasibleSet, p: &[f64], ap: &[f64], t: f64) {
+        set.go(&mut self.x, p, t);
+        let rows = self.g.iter_mut().zip(ap);
+        rows.for_each(|(g, ap)| *g -= t * ap);
+    }
+}
+
 impl Setting<'_> {
     fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
         total(self.comm, a.iter().zip(b).map(|(a, b)| a * b).sum())
     }
 
-    fn free(&self, x: &[f64]) -> Vec<bool> {
-        let rows = x.iter().zip(self.lower).zip(self.fixed);
-        rows.map(|((x, l), fixed)| !fixed && x > l).collect()
-    }
-
-    /// Free and chopped gradient: the gradient at free entries, and its part that points into the feasible set at the
-    /// other entries.
-    fn split(&self, x: &[f64], g: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let free = self.free(x);
-        let part = |keep: &dyn Fn(usize) -> f64| (0..g.len()).map(keep).collect::<Vec<f64>>();
-        let phi = part(&|i| if free[i] { g[i] } else { 0.0 });
-        let beta = part(&|i| {
-            if free[i] || self.fixed[i] {
-                0.0
-            } else {
-                g[i].min(0.0)
-            }
-        });
-        (phi, beta)
-    }
-
     /// Norm of the projected gradient.
     pub fn projected_gradient(&self, x: &[f64], g: &[f64]) -> f64 {
-        let (phi, beta) = self.split(x, g);
+        let [phi, beta] = self.set.split(x, g, self.length);
         (self.dot(&phi, &phi) + self.dot(&beta, &beta)).sqrt()
     }
 
@@ -87,7 +82,9 @@ impl Setting<'_> {
         max: usize,
     ) -> Result<MprgpResult> {
         let (gamma, flatness) = (self.tuning.gamma, self.tuning.flat);
-        let n = x.len();
+        let (set, length, n) = (self.set, self.length, x.len());
+        let has_discs = any(self.comm, !set.discs.is_empty());
+        let mut tau = length;
         let mut run = MprgpResult {
             x,
             g: vec![0.0; n],
@@ -100,16 +97,14 @@ impl Setting<'_> {
         };
         residual(a, &run.x, &mut run.g)?;
         let (mut ap, mut z) = (vec![0.0; n], vec![0.0; n]);
-        let (mut phi, mut beta) = self.split(&run.x, &run.g);
+        let [mut phi, mut beta] = set.split(&run.x, &run.g, length);
         let mut p = self.restart(a, &run.x, &phi, &mut z)?;
         while run.products < max {
             let gradient = (self.dot(&phi, &phi) + self.dot(&beta, &beta)).sqrt();
             if gradient == 0.0 || stop(&run.x, gradient) {
                 break;
             }
-            let reduced: Vec<f64> = (0..n)
-                .map(|i| ((run.x[i] - self.lower[i]) / self.length).min(phi[i]))
-                .collect();
+            let reduced = set.reduced(&run.x, &phi, length);
             if self.dot(&beta, &beta) <= gamma * gamma * self.dot(&reduced, &phi) {
                 a.apply(&p, &mut ap)?;
                 run.products += 1;
@@ -118,54 +113,85 @@ impl Setting<'_> {
                 // Dependent rows have directions without curvature. Their computed curvature is rounding and must not
                 // set the step: x goes to a bound along such a direction if that lowers the function, and does not move
                 // otherwise.
-                let flat = curvature <= flatness * pp / self.length;
+                let flat = curvature <= flatness * pp / length;
                 if flat && along <= flatness.sqrt() * (pp * gg).sqrt() {
                     break;
                 }
                 let wish = along / curvature;
-                let bounded = (0..n).filter(|&i| p[i] > 0.0);
-                let room = bounded.map(|i| (run.x[i] - self.lower[i]) / p[i]);
-                let room = lowest(self.comm, room.fold(f64::INFINITY, f64::min));
+                let room = lowest(self.comm, set.room(&run.x, &p));
                 let inside = !flat && wish <= room;
                 let step = if inside { wish } else { room };
                 if !step.is_finite() {
                     break;
                 }
-                for i in 0..n {
-                    // An entry that the step takes to its bound is set to the bound exactly.
-                    let reach = p[i] > 0.0 && (run.x[i] - self.lower[i]) <= step * p[i];
-                    run.x[i] -= step * p[i];
-                    run.g[i] -= step * ap[i];
-                    run.x[i] = if reach { self.lower[i] } else { run.x[i] };
-                }
+                run.go(set, &p, &ap, step);
                 if inside {
-                    (phi, beta) = self.split(&run.x, &run.g);
+                    [phi, beta] = set.split(&run.x, &run.g, length);
                     a.precondition(&phi, &mut z)?;
                     let along = self.dot(&z, &ap) / curvature;
                     p.iter_mut().zip(&z).for_each(|(p, z)| *p = z - along * *p);
                 } else {
-                    let (phi_half, _) = self.split(&run.x, &run.g);
-                    for i in (0..n).filter(|&i| !self.fixed[i]) {
-                        run.x[i] = (run.x[i] - self.length * phi_half[i]).max(self.lower[i]);
-                    }
+                    let [phi_half, _] = set.split(&run.x, &run.g, length);
+                    set.project(&mut run.x, &phi_half, length);
                     residual(a, &run.x, &mut run.g)?;
                     run.products += 1;
-                    (phi, beta) = self.split(&run.x, &run.g);
+                    [phi, beta] = set.split(&run.x, &run.g, length);
                     p = self.restart(a, &run.x, &phi, &mut z)?;
                 }
+            } else if has_discs {
+                let Some(next) = self.project(a, &mut run, tau)? else {
+                    break;
+                };
+                tau = next;
+                [phi, beta] = set.split(&run.x, &run.g, length);
+                p = self.restart(a, &run.x, &phi, &mut z)?;
             } else {
                 a.apply(&beta, &mut ap)?;
                 run.products += 1;
                 let step = self.dot(&run.g, &beta) / self.dot(&beta, &ap);
-                for i in 0..n {
-                    run.x[i] -= step * beta[i];
-                    run.g[i] -= step * ap[i];
-                }
-                (phi, beta) = self.split(&run.x, &run.g);
+                run.go(set, &beta, &ap, step);
+                [phi, beta] = set.split(&run.x, &run.g, length);
                 p = self.restart(a, &run.x, &phi, &mut z)?;
             }
         }
         Ok(run)
+    }
+
+    /// A projected step of the entries that are not free, of length `tau` or shorter. Returns the length of the next
+    /// one; `None` where no entry moves by more than rounding. Collective.
+    fn project(
+        &self,
+        a: &mut dyn BoundedQuadratic,
+        run: &mut MprgpResult,
+        mut tau: f64,
+    ) -> Result<Option<f64>> {
+        let free = self.set.free(&run.x);
+        let outside = |(g, free): (&f64, &bool)| if *free { 0.0 } else { *g };
+        let g: Vec<f64> = run.g.iter().zip(&free).map(outside).collect();
+        let mut image = vec![0.0; g.len()];
+        loop {
+            let mut to = run.x.clone();
+            self.set.project(&mut to, &g, tau);
+            let d: Vec<f64> = to.iter().zip(&run.x).map(|(to, x)| to - x).collect();
+            let square = self.dot(&d, &d);
+            if square == 0.0 {
+                return Ok(None);
+            }
+            a.apply(&d, &mut image)?;
+            run.products += 1;
+            let curvature = self.dot(&d, &image) / square;
+            let longest = self.tuning.friction.longer * self.length;
+            if curvature * tau > SHORT && tau > self.length {
+                tau = (1.0 / curvature).max(self.length);
+                continue;
+            }
+            run.x = to;
+            run.g.iter_mut().zip(&image).for_each(|(g, a)| *g += a);
+            return Ok(Some(match curvature > 0.0 {
+                true => longest.min(1.0 / curvature),
+                false => longest,
+            }));
+        }
     }
 
     /// The first direction in a face.
@@ -176,7 +202,7 @@ impl Setting<'_> {
         phi: &[f64],
         z: &mut [f64],
     ) -> Result<Vec<f64>> {
-        a.enter(&self.free(x))?;
+        a.enter(&self.set.free(x))?;
         a.precondition(phi, z)?;
         Ok(z.to_vec())
     }

@@ -40,19 +40,32 @@ fn friction_of(report: &Value, steps: usize, step: usize) -> Vec<Value> {
         .collect()
 }
 
-/// Forces to 1e-5, displacements to 1e-4, states within one node, on any ranks.
 #[test]
 fn cases_have_the_values_of_the_oracle() {
-    let scratch = Scratch::new("friction");
+    have_the_values_of_the_oracle("active_set");
+}
+
+#[test]
+fn smalbe_has_the_values_of_the_oracle() {
+    have_the_values_of_the_oracle("smalbe");
+}
+
+/// Forces to 1e-5, displacements to 1e-4, states within one node, on any ranks.
+fn have_the_values_of_the_oracle(method: &str) {
+    let scratch = Scratch::new(&format!("friction-{method}"));
     let mut seen = 0;
     for (name, case) in oracle() {
         let text = case["scene"].as_str().expect("a text");
         let scene = scratch.file("scene.toml", text);
         let steps = case["steps"].as_array().expect("a list");
         for ranks in [1, 2, 4] {
-            let out = run_fetifeti(ranks, &["solve", &scene, "--json", "-"]);
+            let kind = ["-fetifeti_contact_type", method];
+            let arguments = [&["solve", &scene, "--json", "-"][..], &kind].concat();
+            let out = run_fetifeti(ranks, &arguments);
             assert_eq!(out.code, 0, "{name}, {ranks} ranks: {}", out.all());
             let report: Value = serde_json::from_str(&out.stdout).expect("JSON");
+            let by = &report["contact"]["method"];
+            assert!(by.as_str().is_some_and(|by| by.starts_with(method)), "{by}");
             for (k, step) in steps.iter().enumerate() {
                 let what = format!("{name}, step {k}, {ranks} ranks");
                 let found = friction_of(&report, steps.len(), k);

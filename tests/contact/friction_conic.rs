@@ -9,7 +9,7 @@ use crate::support::rng::Rng;
 use crate::support::sample::sample;
 use crate::support::session::with_session;
 use fetifeti::problem::FrictionBound;
-use fetifeti::settings::MethodSettings;
+use fetifeti::settings::{ContactType, MethodSettings};
 use fetifeti::solution::RowState;
 use fetifeti::{FetiFeti, Problem, Settings, Solution};
 use petsc::Session;
@@ -202,13 +202,13 @@ impl Step<'_> {
 }
 
 /// Solves all load steps of a scene both ways, each with the history of its own.
-fn compare(session: &Session, name: &str, text: &str, tally: &mut Tally) {
+fn compare(session: &Session, kind: ContactType, (name, text): (&str, &str), tally: &mut Tally) {
     let parsed = Scene::parse("conic.toml", text).expect("a good scene");
     let problem = parsed.substructures(&|_| true).expect("a good scene");
     let conic = Conic::new(&problem);
     let tresca = { problem.friction.iter() }.all(|n| matches!(n.bound, FrictionBound::Tresca(_)));
     let mut settings = Settings::from(MethodSettings::default().rtol(1e-10));
-    settings.contact.max_it = STEPS;
+    (settings.contact.kind, settings.contact.max_it) = (kind, STEPS);
     let solver = FetiFeti::new(session, problem.clone(), settings);
     let scene = Scene::parse("conic.toml", text).expect("a good scene");
     let solved = solver.and_then(|solver| Stepper::with_solver(scene, solver));
@@ -282,12 +282,19 @@ fn compare(session: &Session, name: &str, text: &str, tally: &mut Tally) {
     }
 }
 
-fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u64>) -> Tally {
+/// Scenes of a kind by a strategy of the contact loop.
+fn all_by(
+    method: ContactType,
+    kind: &'static str,
+    text: fn(u64) -> String,
+    ids: impl Iterator<Item = u64>,
+) -> Tally {
     let ids: Vec<u64> = ids.collect();
     with_session(move |session| {
         let mut tally = Tally::default();
         for id in ids {
-            compare(session, &format!("{kind} {id}"), &text(id), &mut tally);
+            let name = format!("{kind} {id}");
+            compare(session, method, (&name, &text(id)), &mut tally);
         }
         println!(
             "{kind}: load steps that agree: Tresca {}, Coulomb {} (forces within {:.1e}, energy {:.1e}), another \
@@ -308,6 +315,10 @@ fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u6
     })
 }
 
+fn all(kind: &'static str, text: fn(u64) -> String, ids: impl Iterator<Item = u64>) -> Tally {
+    all_by(ContactType::ActiveSet, kind, text, ids)
+}
+
 /// Forty of four hundred scenes of blocks.
 #[test]
 fn held_blocks_have_the_solution_of_the_conic_programme() {
@@ -317,6 +328,19 @@ fn held_blocks_have_the_solution_of_the_conic_programme() {
     assert!(tally.states.iter().all(|n| *n > 10), "{:?}", tally.states);
     assert_eq!((tally.wrong, tally.other), (0, 0));
     assert!(tally.force < 1e-6 && tally.energy < 1e-6);
+}
+
+/// Twenty of them, and four walls, by SMALBE.
+#[test]
+fn smalbe_has_the_solution_of_the_conic_programme() {
+    let tally = all_by(ContactType::Smalbe, "blocks", held, sample(20, 0..400));
+    assert!(tally.failed.is_empty() && (tally.without, tally.undecided) == (0, 0));
+    assert!(tally.right.iter().all(|n| *n > 5), "{:?}", tally.right);
+    assert!(tally.states.iter().all(|n| *n > 10), "{:?}", tally.states);
+    assert_eq!((tally.wrong, tally.other), (0, 0));
+    assert!(tally.force < 1e-6 && tally.energy < 1e-6);
+    let tally = all_by(ContactType::Smalbe, "walls", wall, sample(50, 0..200));
+    assert!(tally.right[0] + tally.right[1] > tally.other / 4);
 }
 
 /// Eight of two hundred walls, whose rows depend on each other, and where states may wander: that is said.
@@ -337,5 +361,9 @@ fn all_scenes_beside_the_conic_programme() {
     let tally = all("blocks", held, 0..400);
     assert!(tally.failed.is_empty() && (tally.wrong, tally.other) == (0, 0));
     let tally = all("walls", wall, 0..200);
+    assert!(tally.failed.len() < 70, "{:?}", tally.failed);
+    let tally = all_by(ContactType::Smalbe, "blocks", held, 0..400);
+    assert!(tally.failed.is_empty() && (tally.wrong, tally.other) == (0, 0));
+    let tally = all_by(ContactType::Smalbe, "walls", wall, 0..200);
     assert!(tally.failed.len() < 70, "{:?}", tally.failed);
 }

@@ -9,7 +9,7 @@ use crate::Result;
 use parallel::exchange::max_all;
 
 /// The nodes of this rank in the states that multipliers and a set say. Collective.
-pub(super) fn nodes(
+pub fn nodes_at(
     method: &LinearMethod,
     tuning: &FrictionTuning,
     lambda: &[f64],
@@ -52,7 +52,7 @@ pub fn error(
         active: held,
         nothing,
     };
-    let nodes = nodes(method, tuning, &solution.lambda, held)?;
+    let nodes = nodes_at(method, tuning, &solution.lambda, held)?;
     let mut largest = [nodes.iter().fold(0.0, |a: f64, n| a.max(n.error(&step)))];
     max_all(method.session.comm(), &mut largest);
     Ok(largest[0])

@@ -9,8 +9,9 @@
 //! C are. g follows between minimisations, a contraction where friction is small. Once the states of two minimisations
 //! are equal, the loop on states ([`Friction`]) is tried from there: it has the digits in one or two steps.
 
-use super::judged::nodes;
+use super::judged::nodes_at;
 use super::node::Node;
+use super::recovered::recovered;
 use super::Friction;
 use crate::contact::course::DualCourse;
 use crate::contact::disc::Disc;
@@ -104,7 +105,7 @@ impl<'a> FrictionLagrangian<'a> {
         own.resize(n, 0.0);
         drop(dual);
         let tuning = &settings.tuning.friction;
-        let nodes = nodes(method, tuning, &cold.lambda, &cold.active)?;
+        let nodes = nodes_at(method, tuning, &cold.lambda, &cold.active)?;
         let disc = |node: &Node| Disc {
             rows: node.tangential.clone(),
             radius: f64::INFINITY,
@@ -351,30 +352,11 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
             return trial.run.finish(steps, seconds, status);
         }
         let (method, state) = (self.method, self.reached());
-        let turns = self.turned.back();
-        self.at.turn(&turns)?;
+        self.turned.back();
         self.springs.rigid();
-        let mut given = vec![0.0; self.law.len()];
-        for &t in self.nodes.iter().flat_map(|n| &n.tangential) {
-            given[t] = if state.active[t] {
-                0.0
-            } else {
-                state.lambda[t]
-            };
-        }
-        method.system.set_given_multipliers(given.clone());
-        method.set_active(&state.active)?;
-        let dual = method.dual();
-        let (g, kernel) = self
-            .loads
-            .with_multipliers(&method.problem, &dual, &given)?;
-        (self.at.loads.g, self.at.loads.kernel, self.at.loads.jumps) = (g, kernel, None);
-        self.at.lambda.array_mut()?.copy_from_slice(&state.lambda);
-        self.at.place(&dual)?;
-        drop(dual);
         let last = self.last.map(|run| (run.residuals, run.estimate));
         let iterations = steps.iter().map(|s| s.iterations).sum();
         let run = KrylovRun::of_loop(iterations, status, last.unwrap_or_default());
-        method.recover(self.at, run, seconds)
+        recovered(method, &state, run, seconds)
     }
 }

@@ -15,6 +15,7 @@ mod newton;
 pub mod node;
 pub mod nodes;
 mod pose;
+mod recovered;
 pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
@@ -27,10 +28,11 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
-pub use judged::error;
+pub use judged::{error, nodes_at};
 pub use lagrangian::FrictionLagrangian;
 use nodes::{Changes, Nodes};
 use parallel::exchange::{any, max_all};
+pub use recovered::recovered;
 
 /// Whether a problem has friction, or rows that give way. Collective.
 pub fn is_asked_for(method: &LinearMethod) -> bool {
@@ -63,7 +65,7 @@ impl<'a> Friction<'a> {
         let cold = State::cold(&method.dual().stiffness.jump);
         let state = start.unwrap_or(&cold);
         let tuning = &settings.tuning.friction;
-        let nodes = judged::nodes(method, tuning, &state.lambda, &state.active)?;
+        let nodes = nodes_at(method, tuning, &state.lambda, &state.active)?;
         let (rows, dual) = (&method.problem.rows, method.dual());
         let contact = nodes.iter().map(|node| {
             let row = dual.stiffness.jump.given(node.normal);

@@ -161,6 +161,11 @@ impl Node {
         self.bound.at(lambda[self.normal])
     }
 
+    /// The largest bound that any multipliers give; ∞ for Coulomb's law without a limit.
+    pub fn largest_bound(&self) -> f64 {
+        self.bound.at(f64::INFINITY)
+    }
+
     /// The row across the slip; `None` in the plane, and if it does not slip.
     pub fn slips_beside(&self) -> Option<usize> {
         match (self.state, &self.tangential[..]) {

@@ -64,6 +64,8 @@ pub struct FrictionTuning {
     pub tried: usize,
     /// After so many steps in a row in which rows had to be put back, those that push come before friction.
     pub tips: usize,
+    /// MPRGP's projected steps are at most as many times longer than 2/‖A‖.
+    pub longer: f64,
     /// A body slides away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,
 }
@@ -96,6 +98,7 @@ impl FrictionTuning {
         settled: 2,
         tried: 4,
         tips: 2,
+        longer: 100.0,
         slides: 8,
     };
 }

@@ -93,6 +93,7 @@ impl Dual {
     pub(crate) fn set_face(&mut self, free: &[bool]) {
         let Stiffness { session, jump, .. } = &mut self.stiffness;
         jump.set_active(session.comm(), free);
+        self.stiffness.renew_springs();
         self.stale = true;
     }
 
