@@ -26,7 +26,7 @@ pub(super) struct SmalbeIteration<'a> {
     pub a: Augmented<'a>,
     /// Pᵀ S (d − F λ̃).
     b: Vec<f64>,
-    /// ‖b‖, or ‖Pᵀ A x‖ of the bounds l₊ where that is larger; tolerances are relative to it.
+    /// ‖b‖, or ‖Pᵀ A x‖ of the admissible x nearest to 0 where that is larger; tolerances are relative to it.
     size: f64,
     /// The bounds; its shift is λ̃.
     set: FeasibleSet,
@@ -45,8 +45,8 @@ pub(super) struct SmalbeIteration<'a> {
 }
 
 impl<'a> SmalbeIteration<'a> {
-    /// The search from `state`. Without one Coulomb's nodes stick at first, as far as a limit allows: without friction
-    /// bodies might slide away. Collective.
+    /// The search from `state`. If that has no forces yet, nodes with Coulomb's law stick at first, as far as a limit
+    /// allows: without friction bodies might slide away. Collective.
     pub fn new(
         method: &'a LinearMethod,
         settings: &'a ContactSettings,
@@ -227,6 +227,7 @@ impl<'a> SmalbeIteration<'a> {
         };
         Ok((step, residual <= accuracy))
     }
+
     /// g ← μ_f λ_n, and x and λ into the new discs. Collective.
     fn follow(&mut self, comm: &SimpleCommunicator, lambda: &mut [f64]) {
         let mut sizes = [0.0, lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()))];

@@ -199,6 +199,29 @@ fn contact_that_is_found_has_its_law() {
     }
 }
 
+/// SMALBE names a body that slides away, too, by either law, and says what has not come to an end.
+#[test]
+fn smalbe_says_what_has_no_end() {
+    let scratch = Scratch::new("friction-smalbe-end");
+    let run = |pull: f64, law: &str, more: &[&str]| {
+        let scene = scratch.file("scene.toml", &incline(pull, law));
+        let kind = ["-fetifeti_contact_type", "smalbe"];
+        let arguments = [&["solve", &scene, "--json", "-"][..], &kind, more].concat();
+        run_fetifeti(1, &arguments)
+    };
+    for law in ["friction = 0.3", "tresca = 0.03"] {
+        assert_eq!(run(0.0299, law, &[]).code, 0, "{law}");
+        let slides = run(0.0301, law, &[]);
+        let text = slides.all();
+        assert_eq!(slides.code, 2, "{law}: {text}");
+        let named = text.contains("\"block\"") && text.contains("slides along x");
+        assert!(named, "{law}: {text}");
+    }
+    let stopped = run(0.0299, "friction = 0.3", &["-fetifeti_contact_max_it", "2"]);
+    assert_eq!(stopped.code, 1, "{}", stopped.all());
+    assert!(stopped.all().contains("DIVERGED_CONTACT_ITS"));
+}
+
 /// A bound that does not depend on the pressure, and a limit of Coulomb's: forces are at most s times the area.
 #[test]
 fn bounds_of_the_shear_stress_are_kept() {

@@ -45,9 +45,9 @@ fn minimised<const N: usize>(
         };
         let mut plain = Plain(a, vec![true; N]);
         let mut stop = |_: &[f64], gradient: f64| gradient < 1e-12;
-        let found = setting.minimise(&mut plain, &b, start.to_vec(), &mut stop, 500);
+        let found = setting.minimise(&mut plain, &b, start.to_vec(), &mut stop, 100);
         let run = found.expect("it runs");
-        assert!(run.products < 500);
+        assert!(run.products < 100);
         (run.x, run.g)
     })
 }
