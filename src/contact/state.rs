@@ -39,6 +39,23 @@ pub struct Step {
 }
 
 impl Step {
+    /// A step whose equations were not begun.
+    pub(super) fn without(method: ContactType) -> Step {
+        Step {
+            method,
+            active: 0,
+            entered: 0,
+            left: 0,
+            iterations: 0,
+            estimate: None,
+            exact: None,
+            residual: 1.0,
+            tolerance: 1.0,
+            wrong: 0,
+            seconds: 0.0,
+        }
+    }
+
     /// This step as the end of one that has begun with `before`.
     pub(super) fn continuing(self, before: &Step) -> Step {
         Step {

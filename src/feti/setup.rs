@@ -35,6 +35,7 @@ use crate::substructures::{Problem, Subdomain};
 use crate::{Error, Result};
 use cholesky::interior::Analysed;
 use parallel::clock::{self, Phase};
+use parallel::exchange::any;
 use parallel::halo::Halo;
 use parallel::team::Team;
 use petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
@@ -256,6 +257,9 @@ fn stiffness(
     let mut stiffness = Stiffness::new(session, jump, locals, space, primal, dual_halo, team)?;
     if varies > refinement::PLAIN {
         stiffness.refine(PrimalRefinement::new(problem, &stiffness.locals));
+    }
+    if any(session.comm(), !problem.friction.is_empty()) || stiffness.jump.is_soft {
+        stiffness.know_nodes(problem)?;
     }
     Ok(stiffness)
 }

@@ -110,6 +110,12 @@ impl RowLabel {
         }
     }
 
+    /// The source of the row and the bodies of its nodes, by numbers that differ from each other.
+    pub fn groups(&self) -> Vec<[usize; 2]> {
+        let bodies = self.members.iter().flatten().map(|node| [3, node.body]);
+        std::iter::once(self.source.code()).chain(bodies).collect()
+    }
+
     /// This label with the position of the node that carries the multiplier, and its parameters along the side.
     pub fn at(mut self, point: [f64; 3], t: [f64; 2]) -> RowLabel {
         (self.point, self.t) = (point, t);

@@ -11,7 +11,7 @@
 
 use super::judged::nodes_at;
 use super::node::Node;
-use super::recovered::recovered;
+use super::recovered::{at_state, recovered};
 use super::Friction;
 use crate::contact::course::DualCourse;
 use crate::contact::disc::Disc;
@@ -81,7 +81,7 @@ pub struct FrictionLagrangian<'a> {
 }
 
 impl<'a> FrictionLagrangian<'a> {
-    /// The search from nothing: all nodes stick, as springs. Of `state` it has the reference and the steps so far.
+    /// The search from where the loop on states has wandered, or from nothing: all nodes stick, as springs.
     /// Collective.
     pub fn new(
         method: &'a LinearMethod,
@@ -100,6 +100,7 @@ impl<'a> FrictionLagrangian<'a> {
         }
         let law = jump.law.clone();
         let n = law.len();
+        let handed = state.clone();
         let (cold, n_rows) = (State::cold(jump), jump.n_global);
         let mut own = jump.compliance.clone();
         own.resize(n, 0.0);
@@ -142,7 +143,7 @@ impl<'a> FrictionLagrangian<'a> {
             n_rows,
             least: method.least_residual(),
             last: None,
-            kinds: Vec::new(),
+            kinds: vec![0; n],
             same: 0,
             inner: 0,
             slides: 0,
@@ -151,7 +152,25 @@ impl<'a> FrictionLagrangian<'a> {
             settings,
         };
         search.set_springs();
+        let found = handed.lambda.iter().any(|l| *l != 0.0);
+        if any(method.session.comm(), handed.safeguarded && found) {
+            search.start_from(&handed)?;
+        }
         Ok(search)
+    }
+
+    /// Begins where the loop on states is. Collective.
+    fn start_from(&mut self, state: &State) -> Result<()> {
+        self.at = at_state(self.method, state)?;
+        self.at.begin(&self.method.dual())?;
+        let point = self.evaluate_point()?;
+        for (node, disc) in self.nodes.iter().zip(&mut self.discs) {
+            disc.radius = node.bound(&point.force);
+        }
+        self.multiplier = self.penalty().forces(&point.force);
+        self.set_springs();
+        self.point = Some(point);
+        Ok(())
     }
 
     /// C and the shifted multipliers, from the stiffness and μ.

@@ -21,13 +21,14 @@ pub(super) mod tuning;
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
 use super::modes::{CompliantRows, TurnedRows};
-use super::settings::ContactSettings;
+use super::settings::{ContactSettings, ContactType};
 use super::state::{State, Step};
 use super::strategy::{Checkpoint, Proposal, Strategy};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
+use base::ErrorKind;
 pub use judged::{error, nodes_at};
 pub use lagrangian::FrictionLagrangian;
 use nodes::{Changes, Nodes};
@@ -67,11 +68,11 @@ impl<'a> Friction<'a> {
         let tuning = &settings.tuning.friction;
         let nodes = nodes_at(method, tuning, &state.lambda, &state.active)?;
         let (rows, dual) = (&method.problem.rows, method.dual());
-        let contact = nodes.iter().map(|node| {
+        let groups = nodes.iter().map(|node| {
             let row = dual.stiffness.jump.given(node.normal);
-            rows[row].label.source.code()
+            rows[row].label.groups()
         });
-        let nodes = Nodes::new(nodes.clone(), contact.collect(), *tuning);
+        let nodes = Nodes::new(nodes.clone(), groups.collect(), *tuning);
         drop(dual);
         let mut inner = ActiveSet::new(method, settings, start)?;
         let accuracy = inner.state.accuracy;
@@ -120,6 +121,28 @@ impl<'a> Friction<'a> {
         let comm = self.method.session.comm();
         let rows = (&state.before[..], &mut state.active[..], stays);
         Ok(self.nodes.update(comm, &step, rows))
+    }
+
+    /// Solves the equations of the present states, for the first time or with renewed forces. Collective.
+    fn solve(&mut self, is_first: bool) -> Result<(Step, Status, ActiveSetChange)> {
+        let tuning = &self.settings.tuning.friction;
+        self.pose()?;
+        self.inner.finer = match is_first {
+            true => tuning.finer,
+            false => tuning.renewed,
+        };
+        // States ask for more digits than the user.
+        let digits = if self.inner.tight { 1.0 } else { tuning.digits };
+        self.inner.state.accuracy = digits * self.accuracy;
+        let solved = self.inner.try_set();
+        self.inner.state.accuracy = self.accuracy;
+        solved
+    }
+
+    /// Hands over to the safeguard, which begins from nothing.
+    fn give_up(&mut self) {
+        self.inner.state.lambda.fill(0.0);
+        self.inner.state.safeguarded = true;
     }
 
     /// Whether the step has numbers for all rows: equations without digits may have none. Collective.
@@ -176,24 +199,22 @@ impl Strategy<DualCourse> for Friction<'_> {
         let tuning = &self.settings.tuning.friction;
         let mut whole: Option<Step> = None;
         for renewal in 0.. {
-            self.pose()?;
-            self.inner.finer = if renewal == 0 {
-                tuning.finer
-            } else {
-                tuning.renewed
+            let (mut step, status, change) = match self.solve(renewal == 0) {
+                // States on the way may leave bodies too loose for the natural coarse problem. Springs hold them.
+                Err(e) if e.kind() == ErrorKind::NotConverged => {
+                    self.give_up();
+                    let none = Step::without(ContactType::ActiveSet);
+                    return Ok((whole.unwrap_or(none), Proposal::GoOn));
+                }
+                other => other?,
             };
-            // States ask for more digits than the user.
-            let digits = if self.inner.tight { 1.0 } else { tuning.digits };
-            self.inner.state.accuracy = digits * self.accuracy;
-            let (mut step, status, change) = self.inner.try_set()?;
-            self.inner.state.accuracy = self.accuracy;
             if let Some(before) = whole {
                 step = step.continuing(&before);
                 self.inner.state.steps -= 1;
             }
             // Equations of states on the way may have no solution, or one without digits. Springs have one.
             if status.broke_down() || !self.is_finite() {
-                self.inner.state.safeguarded = true;
+                self.give_up();
                 return Ok((step, Proposal::GoOn));
             }
             if !status.converged() {
@@ -224,7 +245,10 @@ impl Strategy<DualCourse> for Friction<'_> {
             // A step to the end is worth it where the forces of friction have come to rest.
             self.inner.tight &= still;
             if !(settled && stays) || is_last {
-                self.inner.state.safeguarded = self.nodes.wander(step.wrong);
+                if self.nodes.wander(step.wrong) {
+                    self.rest()?;
+                    self.inner.state.safeguarded = true;
+                }
                 return Ok((step, Proposal::GoOn));
             }
             whole = Some(step);

@@ -62,7 +62,7 @@ impl FrictionLagrangian<'_> {
         let least = target(&method.ksp, self.state.reference, self.length, self.n_rows)?;
         let softer = (tuning.stiffness / self.stiffness).min(1.0);
         let least = (tuning.friction.digits * softer * least).max(self.least);
-        let mut reduction = tuning.reduction * softer;
+        let mut reduction = tuning.friction.reduction * softer;
         let mut run: Option<KrylovRun> = None;
         let mut arrived = None;
         for _ in 0..tuning.attempts {
@@ -272,7 +272,7 @@ impl FrictionLagrangian<'_> {
     }
 
     /// The displacements of the present λ as the rows see them, in the directions that were given. Collective.
-    fn evaluate_point(&mut self) -> Result<LineSearchPoint> {
+    pub(super) fn evaluate_point(&mut self) -> Result<LineSearchPoint> {
         let dual = self.method.dual();
         let residual = &mut self.at.residual;
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;

@@ -14,8 +14,8 @@ use std::collections::HashMap;
 pub struct Nodes {
     /// The nodes.
     pub list: Vec<Node>,
-    /// The contact of each node.
-    contact: Vec<[usize; 2]>,
+    /// The contact of each node, and its bodies ([`RowLabel::groups`](crate::substructures::RowLabel::groups)).
+    groups: Vec<Vec<[usize; 2]>>,
     tuning: FrictionTuning,
     mixing: Mixing,
     progress: ActiveSetProgress,
@@ -33,11 +33,11 @@ pub struct Changes {
 }
 
 impl Nodes {
-    /// These nodes, each of which belongs to a contact.
-    pub fn new(list: Vec<Node>, contact: Vec<[usize; 2]>, tuning: FrictionTuning) -> Nodes {
+    /// These nodes, each of which belongs to a contact and to bodies.
+    pub fn new(list: Vec<Node>, groups: Vec<Vec<[usize; 2]>>, tuning: FrictionTuning) -> Nodes {
         Nodes {
             list,
-            contact,
+            groups,
             tuning,
             mixing: Mixing::default(),
             progress: ActiveSetProgress::default(),
@@ -97,7 +97,7 @@ impl Nodes {
     }
 
     /// Takes the nodes to the states that follow from a step. `before` and `next` say which rows hold in it and are to
-    /// hold after it, `stays` whether the normal rows among them are the same. Where states wander, of each contact
+    /// hold after it, `stays` whether the normal rows among them are the same. Where states wander, of each body
     /// only the nodes that are most wrong change, in `next`, too: all of them at once go too far, and back in the next
     /// step. Collective.
     pub fn update(
@@ -135,7 +135,7 @@ impl Nodes {
         }
     }
 
-    /// Whether each node waits, because others of its contact are far more wrong after a step.
+    /// Whether each node waits, because others of its contact or its bodies are far more wrong after a step.
     fn waiting(&self, step: &Step<'_>, before: &[bool]) -> Vec<bool> {
         if !self.progress.stalled(self.tuning.waits) {
             return vec![false; self.list.len()];
@@ -144,13 +144,18 @@ impl Nodes {
         let wrong = nodes.map(|node| node.wrong(step, before[node.normal]));
         let wrong: Vec<f64> = wrong.collect();
         let mut worst: HashMap<[usize; 2], f64> = HashMap::new();
-        for (contact, wrong) in self.contact.iter().zip(&wrong) {
-            let most = worst.entry(*contact).or_default();
-            *most = most.max(*wrong);
+        for (groups, wrong) in self.groups.iter().zip(&wrong) {
+            for group in groups {
+                let most = worst.entry(*group).or_default();
+                *most = most.max(*wrong);
+            }
         }
         let least = self.tuning.most_wrong;
-        let pairs = self.contact.iter().zip(wrong);
-        let waits = pairs.map(|(contact, wrong)| wrong > 0.0 && wrong < least * worst[contact]);
+        let pairs = self.groups.iter().zip(wrong);
+        let waits = pairs.map(|(groups, wrong)| {
+            let most = groups.iter().fold(0.0f64, |a, g| a.max(worst[g]));
+            wrong > 0.0 && wrong < least * most
+        });
         waits.collect()
     }
 

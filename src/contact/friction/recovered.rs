@@ -8,8 +8,7 @@ use crate::feti::{LinearMethod, LinearSolution};
 use crate::substructures::Law;
 use crate::Result;
 
-/// The solution at the multipliers and the set of `state`, in the directions that were given: what tangential rows bear
-/// that do not hold is a given force. `run` says how the loop has ended. Rows are rigid, and have these directions.
+/// The solution at the multipliers and the set of `state`; see [`at_state`]. `run` says how the loop has ended.
 /// Collective.
 ///
 /// # Errors
@@ -20,6 +19,17 @@ pub fn recovered(
     run: KrylovRun,
     seconds: f64,
 ) -> Result<LinearSolution> {
+    let mut at = at_state(method, state)?;
+    at.place(&method.dual())?;
+    method.recover(at, run, seconds)
+}
+
+/// λ and the loads at the multipliers and the set of `state`, in the directions that were given: what tangential rows
+/// bear that do not hold is a given force. Rows are rigid, and have these directions. Collective.
+///
+/// # Errors
+/// PETSc's own.
+pub fn at_state(method: &LinearMethod, state: &State) -> Result<Iterate> {
     let loads = Loads::new(&method.problem, &method.dual());
     let slips = |(i, law): (usize, &Law)| match law.is_friction() && !state.active[i] {
         true => state.lambda[i],
@@ -31,9 +41,10 @@ pub fn recovered(
     method.set_active(&state.active)?;
     let dual = method.dual();
     let (g, kernel) = loads.with_multipliers(&method.problem, &dual, &given)?;
-    let mut at = Iterate::new(&dual, Loads { g, kernel, ..loads })?;
-    at.lambda.array_mut()?.copy_from_slice(&state.lambda);
-    at.place(&dual)?;
-    drop(dual);
-    method.recover(at, run, seconds)
+    let at = Iterate::new(&dual, Loads { g, kernel, ..loads })?;
+    let mut lambda = at.lambda.array_mut()?;
+    lambda.copy_from_slice(&state.lambda);
+    dual.stiffness.jump.release(&state.active, &mut lambda);
+    drop(lambda);
+    Ok(at)
 }

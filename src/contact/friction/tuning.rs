@@ -43,7 +43,8 @@ pub struct FrictionTuning {
     pub soft_at_edges: f64,
     /// Springs across slips that are stiffer than nodes by this factor are rigid.
     pub rigid: f64,
-    /// After so many only the nodes that are most wrong in each contact change their states.
+    /// After so many only the nodes that are most wrong on each body change their states. With 4 a front of slip along
+    /// a belt takes twice the steps, with 15 a wall of 985 bricks takes more than 200 in place of 43.
     pub waits: usize,
     /// They are the nodes that are wrong by this much of the worst one. With 1 a front of slip that goes along a
     /// contact gets a node ahead in each step.
@@ -54,6 +55,9 @@ pub struct FrictionTuning {
     pub springs: f64,
     /// They are so at most.
     pub stiffest: f64,
+    /// A Newton step there reduces its residual by this. Looser steps lead along kinks of φ: a tenth of them is taken,
+    /// and 50 are no minimum.
+    pub reduction: f64,
     /// Springs across slips that are softer by this are left out there.
     pub softest: f64,
     /// Newton steps of a minimisation at most.
@@ -88,12 +92,13 @@ impl FrictionTuning {
         soft: 100.0,
         soft_at_edges: 2.0,
         rigid: 1e-2,
-        waits: 30,
+        waits: 8,
         most_wrong: 0.3,
         wanders: 45,
         springs: 30.0,
         stiffest: 1e4,
-        softest: 1e3,
+        reduction: 1e-6,
+        softest: 30.0,
         newton_steps: 50,
         settled: 2,
         tried: 4,

@@ -1,9 +1,8 @@
 //! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole.
 
+use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 use std::ops::Range;
-
-use rustc_hash::FxHashMap;
 
 use super::coupled::Coupled;
 use super::dependent;
@@ -136,6 +135,12 @@ impl Block {
             }
         }
         out
+    }
+
+    /// D of its dofs, if its rows are those of a point.
+    pub fn weights(&self) -> Option<Vec<f64>> {
+        let of_point = || self.dofs.iter().map(|dof| dof.weight).collect();
+        matches!(self.form, BlockForm::Dense(_)).then(of_point)
     }
 
     /// The bodies of its dofs, increasing.

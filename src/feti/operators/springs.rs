@@ -16,6 +16,12 @@
 //!
 //! With the orthogonal projection R onto range B, R + X C (I − R) is a projection, too. It takes out the multipliers on
 //! which F + C is zero and no others: those without forces that no spring feels.
+//!
+//! Multipliers with small forces beside their C are of that kind, too: those of rows that nearly depend on each other,
+//! of rows that are much softer than their nodes, and, where a stiff body meets soft ones, those that load the stiff
+//! body alone. At a point where bodies meet, N are the eigenvectors of F_b n = θ (F_b + C) n with θ < 0.1. F_b = B D⁻¹
+//! Bᵀ, of the size that the diagonal of K has, stands for F: nodes that give way alone. The eigenvectors are orthogonal
+//! in F_b and in C, as those without forces are in F and in C.
 
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::scaling;
@@ -43,10 +49,11 @@ impl Springs {
         }
     }
 
-    /// Computes X again for the rows that hold now.
-    pub fn renew(&mut self, jump: &Jump) {
+    /// Computes X again for the rows that hold now. `nodes` says how far nodes give way, by owned row; without it only
+    /// multipliers without forces count.
+    pub fn renew(&mut self, jump: &Jump, nodes: Option<&[f64]>) {
         self.dependent.clear();
-        for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+        for block in &jump.blocks {
             let start = block.rows.start;
             let Some((members, b)) = block.dependent(&jump.active[block.rows.clone()]) else {
                 continue;
@@ -54,12 +61,17 @@ impl Springs {
             let held = |&i: &usize| jump.active[start + members[i]];
             let own: Vec<usize> = (0..members.len()).filter(held).collect();
             let rows: Vec<usize> = own.iter().map(|&i| start + members[i]).collect();
-            if rows.len() < 2 {
-                continue;
-            }
-            let n = forceless(&b, &own);
+            let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
+            let n = match block.weights().zip(nodes) {
+                Some((weights, nodes)) => {
+                    let give: f64 = rows.iter().map(|&r| nodes[r]).sum();
+                    let f = compliance_of_nodes(&b, &own, &weights, give);
+                    soft(&f, &c)
+                }
+                None if rows.len() < 2 => continue,
+                None => forceless(&b, &own),
+            };
             if n.cols > 0 {
-                let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
                 self.dependent.push((rows, inverse(&n, &c)));
             }
         }
@@ -69,6 +81,13 @@ impl Springs {
     pub fn add(&self, jump: &Jump, alpha: f64, lambda: &[f64], out: &mut [f64]) {
         for i in (0..out.len()).filter(|&i| jump.active[i]) {
             out[i] += alpha * self.compliance[i] * lambda[i];
+        }
+    }
+
+    /// q ← (q⁻¹ + C)⁻¹, row by row.
+    pub fn soften(&self, q: &mut [f64]) {
+        for (q, c) in q.iter_mut().zip(&self.compliance) {
+            *q /= 1.0 + *q * c;
         }
     }
 
@@ -120,6 +139,50 @@ fn product(x: &Dense, rows: &[usize], v: impl Fn(usize) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; rows.len()];
     x.add_mul(&v, &mut out);
     out
+}
+
+/// M⁻¹ leaves multipliers to C for which the nodes have less than this share in F + C.
+const NODES: f64 = 0.1;
+
+/// Directions of F + C below this, relative to the largest one, are rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// B D⁻¹ Bᵀ on these rows of a block `b`, of a size that the trace is `give`: how far the nodes give way alone.
+fn compliance_of_nodes(b: &Dense, rows: &[usize], weights: &[f64], give: f64) -> Dense {
+    let entry = |i: usize, j: usize| -> f64 {
+        let (r, s) = (rows[i], rows[j]);
+        let terms = weights.iter().enumerate();
+        terms.map(|(k, w)| b.get(r, k) * b.get(s, k) / w).sum()
+    };
+    let n = rows.len();
+    let trace: f64 = (0..n).map(|i| entry(i, i)).sum();
+    Dense::from_fn(n, n, |i, j| give / trace * entry(i, j))
+}
+
+/// N: the multipliers, orthogonal in `f` and C, to which the compliance `f` of the nodes adds little beside C.
+fn soft(f: &Dense, c: &[f64]) -> Dense {
+    let n = c.len();
+    let none = Dense::zeros(n, 0);
+    if n == 0 || c.iter().all(|c| *c == 0.0) {
+        return none;
+    }
+    let both = faer::Mat::from_fn(n, n, |i, j| f.get(i, j) + if i == j { c[i] } else { 0.0 });
+    let Ok(eigen) = both.self_adjoint_eigen(faer::Side::Lower) else {
+        return none;
+    };
+    let (u, s) = (eigen.U(), eigen.S().column_vector());
+    let most = s[n - 1];
+    let kept: Vec<usize> = (0..n).filter(|&i| s[i] > ROUNDING * most).collect();
+    let white = faer::Mat::from_fn(n, kept.len(), |i, k| u[(i, kept[k])] / s[kept[k]].sqrt());
+    let f = faer::Mat::from_fn(n, n, |i, j| f.get(i, j));
+    let inside = white.transpose() * f * &white;
+    let Ok(eigen) = inside.self_adjoint_eigen(faer::Side::Lower) else {
+        return none;
+    };
+    let share = eigen.S().column_vector();
+    let count = (0..kept.len()).filter(|&k| share[k] < NODES).count();
+    let vectors = &white * eigen.U().subcols(0, count);
+    Dense::from_fn(n, count, |i, k| vectors[(i, k)])
 }
 
 /// N: an orthonormal basis of the multipliers without forces, BᵀN = 0, on these rows of a block `b`.

@@ -23,6 +23,7 @@ use crate::feti::primal::space::PrimalSpace;
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
+use crate::substructures::Problem;
 use crate::Result;
 use base::linalg::dense::Dense;
 use parallel::halo::Halo;
@@ -53,6 +54,8 @@ pub struct Stiffness {
     refinement: Option<PrimalRefinement>,
     /// C; `None` stands for zero.
     springs: Option<Springs>,
+    /// By how much nodes give way, by owned row, where there may be springs.
+    nodes: Option<Vec<f64>>,
     buffers: RefCell<Buffers>,
 }
 
@@ -90,6 +93,7 @@ impl Stiffness {
             team,
             refinement: None,
             springs: None,
+            nodes: None,
             buffers: RefCell::new(buffers),
         };
         out.set_compliance(None);
@@ -123,13 +127,27 @@ impl Stiffness {
     /// Adapts what depends on the rows that hold in C. Call it after they have changed.
     pub(super) fn renew_springs(&mut self) {
         if let Some(springs) = &mut self.springs {
-            springs.renew(&self.jump);
+            springs.renew(&self.jump, self.nodes.as_deref());
         }
+    }
+
+    /// Notes how far nodes give way, for springs in the rows. Collective.
+    pub fn know_nodes(&mut self, problem: &Problem) -> Result<()> {
+        self.nodes = Some(self.compliance_of_rows(problem)?);
+        self.renew_springs();
+        Ok(())
     }
 
     /// C, unless it is zero.
     pub(super) fn springs(&self) -> Option<&Springs> {
         self.springs.as_ref()
+    }
+
+    /// q ← (q⁻¹ + C)⁻¹, row by row.
+    pub fn add_springs(&self, q: &mut [f64]) {
+        if let Some(springs) = &self.springs {
+            springs.soften(q);
+        }
     }
 
     /// out ← out + α Z C λ.

@@ -131,7 +131,7 @@ impl NaturalCoarse {
         if r > 0 {
             natural.all = natural.all_rows(problem, stiffness);
             natural.spread = spread(comm, problem, stiffness);
-            let (differ, switch) = ((natural.spread, varies), natural.slides(stiffness));
+            let (differ, switch) = ((natural.spread, varies), natural.slides(problem, stiffness));
             natural.projector = choose(preconditioner, wanted, differ, switch);
             natural.arrange(problem, stiffness)?;
             natural.renew(problem, stiffness, preconditioner)?;
@@ -249,7 +249,9 @@ impl NaturalCoarse {
         self.qg = match self.projector {
             ProjectorKind::Diagonal => {
                 let mut qg = self.g.clone();
-                qg.scale_rows(&self.superlumped(problem, stiffness)?);
+                let mut q = self.superlumped(problem, stiffness)?;
+                stiffness.add_springs(&mut q);
+                qg.scale_rows(&q);
                 Some(qg)
             }
             ProjectorKind::Preconditioner => {

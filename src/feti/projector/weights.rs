@@ -69,12 +69,16 @@ pub(super) fn spread(comm: &SimpleCommunicator, problem: &Problem, stiffness: &S
 impl NaturalCoarse {
     /// Whether rows switch between many bodies of elasticity, none of which are tied to each other. M⁻¹G then takes
     /// hundreds of products with M⁻¹ in each step of the contact loop, and saves few iterations: rows without friction
-    /// carry normal forces alone (docs/theory.md, section 6). Collective.
-    pub(super) fn slides(&self, stiffness: &Stiffness) -> bool {
+    /// carry normal forces alone (docs/theory.md, section 6). With friction rows have springs on the way, which M⁻¹
+    /// does not know: P would put forces on the softest ones. Collective.
+    pub(super) fn slides(&self, problem: &Problem, stiffness: &Stiffness) -> bool {
         let jump = &stiffness.jump;
         let mut rows = jump.rows_between_bodies();
-        let tied = rows.any(|i| !jump.law[i].is_inequality() && jump.is_candidate(i));
-        self.r > FEW && self.columns.most() > 1 && !any(stiffness.comm(), tied)
+        let tie = |i: usize| !jump.law[i].is_inequality() && !jump.law[i].is_friction();
+        let tied = rows.any(|i| tie(i) && jump.is_candidate(i));
+        let friction = any(stiffness.comm(), !problem.friction.is_empty());
+        let many = self.r > FEW && self.columns.most() > 1;
+        (many || friction) && !any(stiffness.comm(), tied)
     }
 
     /// diag(B_D diag(K) B_Dᵀ) on the owned rows, with diag(G)⁻¹ in place of G⁻¹ in coupled blocks: any positive

@@ -42,7 +42,7 @@ pub struct Inequalities {
     /// A unit of each row's difference in the row of the scene; a list shorter than `rows` stands for ones.
     pub scale: Vec<f64>,
     /// The contact of each row; rows beyond the list are of one contact.
-    pub contact: Vec<[usize; 2]>,
+    pub groups: Vec<Vec<[usize; 2]>>,
     /// The nodes with friction, by the places of their rows here.
     pub friction: Vec<FrictionNode>,
     /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
@@ -79,7 +79,7 @@ impl Inequalities {
             let bound = layout.bound_of(ends.len(), row);
             let (places, scale) = bound.unwrap_or(([None; 2], 1.0));
             ends.push(places);
-            out.contact.push(row.label.source.code());
+            out.groups.push(row.label.groups());
             out.initial.push(row.holds);
             out.compliance.push(row.compliance / (scale * scale));
             out.scale.push(scale);
@@ -247,9 +247,9 @@ impl Inequalities {
         out
     }
 
-    /// The contact of a row.
-    pub fn contact_of(&self, row: usize) -> [usize; 2] {
-        self.contact.get(row).copied().unwrap_or_default()
+    /// The contact of a row, and its bodies.
+    pub fn groups_of(&self, row: usize) -> Vec<[usize; 2]> {
+        self.groups.get(row).cloned().unwrap_or_default()
     }
 
     /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the

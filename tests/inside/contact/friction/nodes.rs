@@ -10,8 +10,12 @@ fn three() -> Nodes {
         (node.normal, node.tangential) = (2 * k, vec![2 * k + 1]);
         node
     });
-    let contact = vec![[0, 0], [0, 0], [0, 1]];
-    Nodes::new(list.collect(), contact, FrictionTuning::DEFAULT)
+    let groups = vec![
+        vec![[0, 0], [3, 0]],
+        vec![[0, 0], [3, 0]],
+        vec![[0, 1], [3, 1]],
+    ];
+    Nodes::new(list.collect(), groups, FrictionTuning::DEFAULT)
 }
 
 /// Nodes whose forces are above their bound of 1 by `excess`.
@@ -73,4 +77,19 @@ fn wander(comm: &SimpleCommunicator) {
     assert!(!nodes.slides(false));
     assert!(!(0..FrictionTuning::DEFAULT.slides).any(|_| nodes.slides(true)));
     assert!(nodes.slides(true));
+}
+
+/// Nodes of several contacts wait for each other where these share a body.
+#[test]
+fn the_contacts_of_a_body_change_in_turn() {
+    with_session(|session| {
+        let comm = session.comm();
+        let mut nodes = three();
+        nodes.groups[2].push([3, 0]);
+        (0..=FrictionTuning::DEFAULT.waits).for_each(|_| {
+            nodes.wander(5);
+        });
+        step(&mut nodes, comm, [1.0, 0.1, 0.2]);
+        assert_eq!(slipping(&nodes), [true, false, false]);
+    });
 }

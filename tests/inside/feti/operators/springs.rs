@@ -60,3 +60,34 @@ fn rounding_is_no_compliance() {
         .iter()
         .all(|v| *v == 0.0));
 }
+
+/// A soft point between two stiff ones, by two rows: equal and opposite forces load the stiff points alone.
+#[test]
+fn springs_that_are_softer_than_their_nodes_are_found() {
+    let b = Dense::from_fn(2, 3, |r, k| [[1.0, -1.0, 0.0], [0.0, -1.0, 1.0]][r][k]);
+    let weights = [1e4, 1.0, 1e4];
+    let f = compliance_of_nodes(&b, &[0, 1], &weights, 2.0);
+    // The trace is what is given, and the shape that of B D⁻¹ Bᵀ.
+    assert!((f.get(0, 0) + f.get(1, 1) - 2.0).abs() < 1e-14);
+    assert!((f.get(0, 1) / f.get(0, 0) - 1.0 / 1.0001).abs() < 1e-12);
+    let n = soft(&f, &[1.0 / 30.0; 2]);
+    assert_eq!(n.cols, 1);
+    assert!((n.get(0, 0) + n.get(1, 0)).abs() < 1e-12 * n.get(0, 0).abs());
+    // N is orthogonal to the rest in F and in C.
+    let c = [1e-3, 4e-3];
+    let n = soft(&f, &c);
+    assert_eq!(n.cols, 1);
+    let x = inverse(&n, &c);
+    for (i, c) in c.iter().enumerate() {
+        // Rest = e_i − X C e_i; Nᵀ F rest = 0.
+        let rest = [0, 1].map(|k| f64::from(u8::from(k == i)) - x.get(k, i) * c);
+        let work: f64 = (0..4)
+            .map(|k| n.get(k / 2, 0) * f.get(k / 2, k % 2) * rest[k % 2])
+            .sum();
+        assert!(work.abs() < 1e-9 * n.get(0, 0).abs(), "{work}");
+    }
+    // Stiff springs leave all to M⁻¹, soft ones nothing.
+    assert_eq!(soft(&f, &[1e-9; 2]).cols, 0);
+    assert_eq!(soft(&f, &[0.0; 2]).cols, 0);
+    assert_eq!(soft(&f, &[100.0; 2]).cols, 2);
+}

@@ -82,9 +82,9 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
             Node::new(given, |r| r, beside[given.normal], at, &give, &tuning)
         };
         let list: Vec<Node> = rows.friction.iter().map(node).collect();
-        let contact = list.iter().map(|node| rows.contact_of(node.normal));
+        let groups = list.iter().map(|node| rows.groups_of(node.normal));
         StickAndSlip {
-            nodes: Nodes::new(list.clone(), contact.collect(), tuning),
+            nodes: Nodes::new(list.clone(), groups.collect(), tuning),
             equations,
             rows,
             tuning,
