@@ -159,12 +159,13 @@ impl Nodes {
         waits.collect()
     }
 
-    /// Which tangential rows hold where rows may have to be put back, into `held`: those that stick. Springs across
-    /// slips give way as far as a body slides.
+    /// Which tangential rows hold where rows may have to be put back, into `held`: those that stick, and springs across
+    /// slips. A body near its limit stands although all its nodes slip: their forces turn with the slips.
     pub fn sticking(&self, held: &mut [bool]) {
         for node in &self.list {
-            let sticks = node.state == NodeState::Stick;
-            node.tangential.iter().for_each(|&t| held[t] = sticks);
+            for (&t, holds) in node.tangential.iter().zip(node.holds()) {
+                held[t] = holds;
+            }
         }
     }
 
