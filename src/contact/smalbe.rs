@@ -24,6 +24,7 @@ use super::smalbe_trial::SmalbeTrial;
 use super::state::{ActiveSetProgress, State, Step};
 use super::strategy::{Checkpoint, Proposal, Strategy};
 use crate::feti::krylov::iterate::KrylovRun;
+use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
@@ -185,7 +186,8 @@ impl Strategy<DualCourse> for Smalbe<'_> {
         if self.friction {
             let iterations = steps.iter().map(|s| s.iterations).sum();
             let run = KrylovRun::of_loop(iterations, status, Default::default());
-            return friction::recovered(self.method, &self.state, run, seconds);
+            let loads = Loads::new(&self.method.problem, &self.method.dual());
+            return friction::recovered(self.method, loads, &self.state, run, seconds);
         }
         let run = ActiveSet::new(self.method, self.settings, Some(&self.state))?;
         run.end(steps, seconds, status)

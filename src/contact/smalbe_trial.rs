@@ -2,9 +2,9 @@
 //! solves the equations to the tolerance of the user, and judges the result.
 
 use super::active_set::ActiveSet;
-use super::friction::Friction;
+use super::friction::StatesTrial;
 use super::settings::ContactSettings;
-use super::state::{ActiveSetProgress, State, Step};
+use super::state::{State, Step};
 use super::strategy::{Proposal, Strategy};
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
@@ -15,15 +15,7 @@ pub(super) enum SmalbeTrial<'a> {
     /// Of a set, with the steps so far.
     Set(Box<ActiveSet<'a>>, usize),
     /// Of states of nodes.
-    States(Box<Friction<'a>>, StatesProgress),
-}
-
-/// How a trial of states comes on.
-#[derive(Debug, Default)]
-pub(super) struct StatesProgress {
-    wrong: ActiveSetProgress,
-    /// Whether its equations were not solved.
-    broken: bool,
+    States(StatesTrial<'a>),
 }
 
 impl<'a> SmalbeTrial<'a> {
@@ -38,8 +30,8 @@ impl<'a> SmalbeTrial<'a> {
         friction: bool,
     ) -> Result<SmalbeTrial<'a>> {
         if friction {
-            let run = Friction::new(method, settings, Some(start))?;
-            return Ok(SmalbeTrial::States(run.into(), StatesProgress::default()));
+            let run = StatesTrial::new(method, settings, start)?;
+            return Ok(SmalbeTrial::States(run));
         }
         let mut run = ActiveSet::new(method, settings, Some(start))?;
         let (tuning, rtol) = (&settings.tuning, method.ksp.tolerances()?.0);
@@ -51,19 +43,15 @@ impl<'a> SmalbeTrial<'a> {
     pub fn state(&self) -> &State {
         match self {
             SmalbeTrial::Set(run, _) => &run.state,
-            SmalbeTrial::States(run, _) => run.state(),
+            SmalbeTrial::States(run) => run.state(),
         }
     }
 
     /// Whether it has not come to an end and is given up: a set after a few steps, states once they come no nearer.
     pub fn is_in_vain(&self, settings: &ContactSettings) -> bool {
-        let tuning = &settings.tuning;
         match self {
-            SmalbeTrial::Set(_, steps) => *steps == tuning.closing_steps,
-            SmalbeTrial::States(run, progress) => {
-                let stalled = progress.wrong.stalled(tuning.friction.tried);
-                progress.broken || stalled || run.state().safeguarded
-            }
+            SmalbeTrial::Set(_, steps) => *steps == settings.tuning.closing_steps,
+            SmalbeTrial::States(run) => run.is_in_vain(),
         }
     }
 
@@ -78,15 +66,7 @@ impl<'a> SmalbeTrial<'a> {
                 *steps += 1;
                 run.step()
             }
-            SmalbeTrial::States(run, progress) => {
-                let (step, proposal) = run.step()?;
-                progress.wrong.note(step.wrong);
-                progress.broken = matches!(&proposal, Proposal::End(s) if !s.converged());
-                match progress.broken {
-                    true => Ok((step, Proposal::GoOn)),
-                    false => Ok((step, proposal)),
-                }
-            }
+            SmalbeTrial::States(run) => run.step(),
         }
     }
 
@@ -97,7 +77,7 @@ impl<'a> SmalbeTrial<'a> {
     pub fn finish(self, steps: &[Step], seconds: f64, status: Status) -> Result<LinearSolution> {
         match self {
             SmalbeTrial::Set(run, _) => run.end(steps, seconds, status),
-            SmalbeTrial::States(run, _) => run.finish(steps, seconds, status),
+            SmalbeTrial::States(run) => run.finish(steps, seconds, status),
         }
     }
 }

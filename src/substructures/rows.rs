@@ -111,9 +111,13 @@ impl RowLabel {
     }
 
     /// The source of the row and the bodies of its nodes, by numbers that differ from each other.
-    pub fn groups(&self) -> Vec<[usize; 2]> {
-        let bodies = self.members.iter().flatten().map(|node| [3, node.body]);
-        std::iter::once(self.source.code()).chain(bodies).collect()
+    /// The source takes the place of nodes that there are not.
+    pub fn groups(&self) -> [[usize; 2]; 3] {
+        let source = self.source.code();
+        let [a, b] = self
+            .members
+            .map(|node| node.map_or(source, |node| [3, node.body]));
+        [source, a, b]
     }
 
     /// This label with the position of the node that carries the multiplier, and its parameters along the side.

@@ -18,9 +18,8 @@ use fetifeti::{FetiFeti, Problem, Solution};
 use petsc::Session;
 use scene::{Scene, Stepper};
 
-/// Conditions hold to this, relative to the largest force or displacement. One wall of five hundred (85) has 5.4e-6,
-/// and the others 1e-8.
-const ACCURACY: f64 = 1e-5;
+/// Conditions hold to this, relative to the largest force or displacement.
+const ACCURACY: f64 = 1e-6;
 
 /// The tolerance of the solver.
 const RTOL: f64 = 1e-9;

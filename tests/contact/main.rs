@@ -11,6 +11,8 @@ mod failed;
 mod friction;
 mod friction_conic;
 mod friction_gallery;
+mod friction_mortar;
+mod friction_oracle;
 mod friction_reference;
 mod friction_renewed;
 mod friction_walls;

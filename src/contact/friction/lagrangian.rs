@@ -7,12 +7,12 @@
 //!
 //! For given g this is the proximal method of multipliers of a convex problem: it converges whatever g and the springs
 //! C are. g follows between minimisations, a contraction where friction is small. Once the states of two minimisations
-//! are equal, the loop on states ([`Friction`]) is tried from there: it has the digits in one or two steps.
+//! are equal, the loop on states ([`StatesTrial`]) is tried from there: it has the digits in one or two steps.
 
 use super::judged::nodes_at;
 use super::node::Node;
 use super::recovered::{at_state, recovered};
-use super::Friction;
+use super::trial::StatesTrial;
 use crate::contact::course::DualCourse;
 use crate::contact::disc::Disc;
 use crate::contact::existence::Existence;
@@ -20,7 +20,7 @@ use crate::contact::line_search::LineSearchPoint;
 use crate::contact::modes::{CompliantRows, TurnedRows};
 use crate::contact::repairs::Repairs;
 use crate::contact::settings::ContactSettings;
-use crate::contact::state::{ActiveSetProgress, State, Step};
+use crate::contact::state::{State, Step};
 use crate::contact::strategy::{Proposal, Strategy};
 use crate::feti::krylov::iterate::KrylovRun;
 use crate::feti::krylov::loads::Loads;
@@ -30,12 +30,6 @@ use crate::status::Status;
 use crate::substructures::Law;
 use crate::Result;
 use parallel::exchange::{any, max_all, total};
-
-/// The loop on states that is tried from a minimum.
-struct Trial<'a> {
-    run: Box<Friction<'a>>,
-    progress: ActiveSetProgress,
-}
 
 /// The strategy.
 pub struct FrictionLagrangian<'a> {
@@ -77,7 +71,8 @@ pub struct FrictionLagrangian<'a> {
     inner: usize,
     /// Newton steps in a row for which rows had to be put back.
     pub(super) slides: usize,
-    trial: Option<Trial<'a>>,
+    /// The loop on states that is tried from a minimum.
+    trial: Option<StatesTrial<'a>>,
 }
 
 impl<'a> FrictionLagrangian<'a> {
@@ -161,7 +156,7 @@ impl<'a> FrictionLagrangian<'a> {
 
     /// Begins where the loop on states is. Collective.
     fn start_from(&mut self, state: &State) -> Result<()> {
-        self.at = at_state(self.method, state)?;
+        self.at = at_state(self.method, self.loads.clone(), state)?;
         self.at.begin(&self.method.dual())?;
         let point = self.evaluate_point()?;
         for (node, disc) in self.nodes.iter().zip(&mut self.discs) {
@@ -315,31 +310,22 @@ impl<'a> FrictionLagrangian<'a> {
         let turns = self.turned.back();
         self.at.turn(&turns)?;
         self.nodes.iter_mut().for_each(Node::turned_back);
-        let run = Friction::new(self.method, self.settings, Some(&self.reached()))?;
-        self.trial = Some(Trial {
-            run: Box::new(run),
-            progress: ActiveSetProgress::default(),
-        });
+        let trial = StatesTrial::new(self.method, self.settings, &self.reached())?;
+        self.trial = Some(trial);
         Ok(())
     }
 
     /// A step of a trial. Collective.
-    fn try_states(&mut self, mut trial: Trial<'a>) -> Result<(Step, Proposal<Status>)> {
-        let (step, proposal) = trial.run.step()?;
-        self.state.steps = trial.run.state().steps;
-        self.state.before.clone_from(&trial.run.state().before);
-        trial.progress.note(step.wrong);
-        let ended = match &proposal {
-            Proposal::End(status) => Some(status.converged()),
-            Proposal::GoOn => None,
-        };
-        let tuning = &self.settings.tuning;
-        let fails = trial.progress.stalled(tuning.friction.tried) || trial.run.state().safeguarded;
-        if ended == Some(true) || ended.is_none() && !fails {
+    fn try_states(&mut self, mut trial: StatesTrial<'a>) -> Result<(Step, Proposal<Status>)> {
+        let (step, proposal) = trial.step()?;
+        self.state.steps = trial.state().steps;
+        self.state.before.clone_from(&trial.state().before);
+        if matches!(proposal, Proposal::End(_)) || !trial.is_in_vain() {
             self.trial = Some(trial);
             return Ok((step, proposal));
         }
         drop(trial);
+        let tuning = &self.settings.tuning;
         self.stiffness = (tuning.stiffer * self.stiffness).min(tuning.friction.stiffest);
         self.set_springs();
         Ok((step, Proposal::GoOn))
@@ -349,7 +335,7 @@ impl<'a> FrictionLagrangian<'a> {
 impl Strategy<DualCourse> for FrictionLagrangian<'_> {
     fn state(&self) -> &State {
         match &self.trial {
-            Some(trial) => trial.run.state(),
+            Some(trial) => trial.state(),
             None => &self.state,
         }
     }
@@ -368,7 +354,7 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
         status: Status,
     ) -> Result<LinearSolution> {
         if let Some(trial) = self.trial.take() {
-            return trial.run.finish(steps, seconds, status);
+            return trial.finish(steps, seconds, status);
         }
         let (method, state) = (self.method, self.reached());
         self.turned.back();
@@ -376,6 +362,6 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
         let last = self.last.map(|run| (run.residuals, run.estimate));
         let iterations = steps.iter().map(|s| s.iterations).sum();
         let run = KrylovRun::of_loop(iterations, status, last.unwrap_or_default());
-        recovered(method, &state, run, seconds)
+        recovered(method, self.loads, &state, run, seconds)
     }
 }

@@ -16,6 +16,7 @@ pub mod node;
 pub mod nodes;
 mod pose;
 mod recovered;
+mod trial;
 pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
@@ -34,6 +35,7 @@ pub use lagrangian::FrictionLagrangian;
 use nodes::{Changes, Nodes};
 use parallel::exchange::{any, max_all};
 pub use recovered::recovered;
+pub use trial::StatesTrial;
 
 /// Whether a problem has friction, or rows that give way. Collective.
 pub fn is_asked_for(method: &LinearMethod) -> bool {
@@ -162,7 +164,7 @@ impl<'a> Friction<'a> {
         let (_, load) = self.loads.with_multipliers(problem, &dual, &given)?;
         drop(dual);
         let mut active = self.inner.state.active.clone();
-        self.nodes.sticking(&mut active);
+        Nodes::sticking(&self.nodes.list, &mut active);
         let mut scores = vec![0.0; active.len()];
         self.nodes.score(self.inner.length, &mut scores);
         let mut held = active.clone();

@@ -160,10 +160,7 @@ impl FrictionLagrangian<'_> {
                     _ => dual.stiffness.jump.initial[i],
                 })
                 .collect();
-            for node in &self.nodes {
-                let sticks = node.state == NodeState::Stick;
-                node.tangential.iter().for_each(|&t| active[t] = sticks);
-            }
+            Nodes::sticking(&self.nodes, &mut active);
             let score = |i: usize| match &self.point {
                 Some(point) if self.law[i].is_friction() => -point.gap[i].abs(),
                 Some(point) => point.gap[i],

@@ -7,7 +7,7 @@ use super::tuning::FrictionTuning;
 use crate::contact::state::ActiveSetProgress;
 use crate::feti::jump::turn::Turn;
 use mpi::topology::SimpleCommunicator;
-use parallel::exchange::{any, highest, max_all, sum_all};
+use parallel::exchange::{any, gather_all, highest, max_all, sum_all};
 use std::collections::HashMap;
 
 /// The nodes of a rank.
@@ -15,7 +15,7 @@ pub struct Nodes {
     /// The nodes.
     pub list: Vec<Node>,
     /// The contact of each node, and its bodies ([`RowLabel::groups`](crate::substructures::RowLabel::groups)).
-    groups: Vec<Vec<[usize; 2]>>,
+    groups: Vec<[[usize; 2]; 3]>,
     tuning: FrictionTuning,
     mixing: Mixing,
     progress: ActiveSetProgress,
@@ -34,7 +34,7 @@ pub struct Changes {
 
 impl Nodes {
     /// These nodes, each of which belongs to a contact and to bodies.
-    pub fn new(list: Vec<Node>, groups: Vec<Vec<[usize; 2]>>, tuning: FrictionTuning) -> Nodes {
+    pub fn new(list: Vec<Node>, groups: Vec<[[usize; 2]; 3]>, tuning: FrictionTuning) -> Nodes {
         Nodes {
             list,
             groups,
@@ -107,7 +107,7 @@ impl Nodes {
         (before, next, stays): (&[bool], &mut [bool], bool),
     ) -> Changes {
         let bounds = self.bounds();
-        let waits = self.waiting(step, before);
+        let waits = self.waiting(comm, step, before);
         let (mut flips, mut moves) = ([0.0], [0.0f64]);
         for (node, waits) in self.list.iter_mut().zip(waits) {
             let change = node.update(step, waits);
@@ -135,37 +135,42 @@ impl Nodes {
         }
     }
 
-    /// Whether each node waits, because others of its contact or its bodies are far more wrong after a step.
-    fn waiting(&self, step: &Step<'_>, before: &[bool]) -> Vec<bool> {
+    /// Whether each node waits, because others of its contact or its bodies, on any rank, are far more wrong after a
+    /// step. Collective.
+    fn waiting(&self, comm: &SimpleCommunicator, step: &Step<'_>, before: &[bool]) -> Vec<bool> {
         if !self.progress.stalled(self.tuning.waits) {
             return vec![false; self.list.len()];
         }
         let nodes = self.list.iter();
         let wrong = nodes.map(|node| node.wrong(step, before[node.normal]));
         let wrong: Vec<f64> = wrong.collect();
-        let mut worst: HashMap<[usize; 2], f64> = HashMap::new();
-        for (groups, wrong) in self.groups.iter().zip(&wrong) {
-            for group in groups {
-                let most = worst.entry(*group).or_default();
-                *most = most.max(*wrong);
-            }
-        }
+        let pairs = self.groups.iter().zip(&wrong);
+        let here = worst(pairs.flat_map(|(groups, w)| groups.map(|group| (group, *w))));
+        let sent = here
+            .iter()
+            .map(|([kind, k], w)| [*kind as u64, *k as u64, w.to_bits()]);
+        let all = gather_all(comm, &sent.collect::<Vec<_>>()).concat();
+        let worst = worst(
+            all.iter()
+                .map(|[kind, k, w]| ([*kind as usize, *k as usize], f64::from_bits(*w))),
+        );
         let least = self.tuning.most_wrong;
         let pairs = self.groups.iter().zip(wrong);
         let waits = pairs.map(|(groups, wrong)| {
-            let most = groups.iter().fold(0.0f64, |a, g| a.max(worst[g]));
+            let most = groups
+                .iter()
+                .fold(0.0f64, |a, g| a.max(worst.get(g).copied().unwrap_or(0.0)));
             wrong > 0.0 && wrong < least * most
         });
         waits.collect()
     }
 
-    /// Which tangential rows hold where rows may have to be put back, into `held`: those that stick, and springs across
-    /// slips. A body near its limit stands although all its nodes slip: their forces turn with the slips.
-    pub fn sticking(&self, held: &mut [bool]) {
-        for node in &self.list {
-            for (&t, holds) in node.tangential.iter().zip(node.holds()) {
-                held[t] = holds;
-            }
+    /// Which tangential rows hold because their nodes stick, into `held`. Where rows may have to be put back no others
+    /// count: springs across slips give way as far as a body slides, and the solution has given forces in their place.
+    pub fn sticking(list: &[Node], held: &mut [bool]) {
+        for node in list {
+            let sticks = node.state == NodeState::Stick;
+            node.tangential.iter().for_each(|&t| held[t] = sticks);
         }
     }
 
@@ -210,6 +215,16 @@ impl Nodes {
         self.progress.note(wrong);
         self.progress.stalled(self.tuning.wanders)
     }
+}
+
+/// The largest value of each group that has a positive one.
+fn worst(pairs: impl Iterator<Item = ([usize; 2], f64)>) -> HashMap<[usize; 2], f64> {
+    let mut out: HashMap<[usize; 2], f64> = HashMap::new();
+    for (group, value) in pairs.filter(|(_, value)| *value > 0.0) {
+        let most = out.entry(group).or_default();
+        *most = most.max(value);
+    }
+    out
 }
 
 /// The largest force of a row; 1 if there is none. Collective.

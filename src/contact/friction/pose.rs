@@ -1,6 +1,6 @@
 //! The states of nodes in the equations: rows that hold, turns, springs, given forces.
 
-use super::node::{Node, NodeState};
+use super::node::Node;
 use super::nodes::Nodes;
 use super::Friction;
 use crate::feti::jump::turn::Turn;
@@ -102,10 +102,7 @@ impl Friction<'_> {
         let method = self.method;
         let mut active = method.dual().stiffness.jump.active.clone();
         let held = active.clone();
-        for node in &self.nodes.list {
-            let sticks = node.state == NodeState::Stick;
-            node.tangential.iter().for_each(|&t| active[t] = sticks);
-        }
+        Nodes::sticking(&self.nodes.list, &mut active);
         let in_space = self.nodes.list.iter().any(|n| n.tangential.len() > 1);
         if !any(method.session.comm(), in_space || active != held) {
             return Ok(());

@@ -15,22 +15,22 @@ use crate::Result;
 /// PETSc's own.
 pub fn recovered(
     method: &LinearMethod,
+    loads: Loads,
     state: &State,
     run: KrylovRun,
     seconds: f64,
 ) -> Result<LinearSolution> {
-    let mut at = at_state(method, state)?;
+    let mut at = at_state(method, loads, state)?;
     at.place(&method.dual())?;
     method.recover(at, run, seconds)
 }
 
-/// λ and the loads at the multipliers and the set of `state`, in the directions that were given: what tangential rows
-/// bear that do not hold is a given force. Rows are rigid, and have these directions. Collective.
+/// λ and the `loads` of the problem at the multipliers and the set of `state`, in the directions that were given: what
+/// tangential rows bear that do not hold is a given force. Rows are rigid, and have these directions. Collective.
 ///
 /// # Errors
 /// PETSc's own.
-pub fn at_state(method: &LinearMethod, state: &State) -> Result<Iterate> {
-    let loads = Loads::new(&method.problem, &method.dual());
+pub fn at_state(method: &LinearMethod, loads: Loads, state: &State) -> Result<Iterate> {
     let slips = |(i, law): (usize, &Law)| match law.is_friction() && !state.active[i] {
         true => state.lambda[i],
         false => 0.0,

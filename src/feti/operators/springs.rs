@@ -62,6 +62,10 @@ impl Springs {
             let own: Vec<usize> = (0..members.len()).filter(held).collect();
             let rows: Vec<usize> = own.iter().map(|&i| start + members[i]).collect();
             let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
+            // Rigid rows need no X. Most are, in most steps.
+            if c.iter().all(|c| *c == 0.0) {
+                continue;
+            }
             let n = match block.weights().zip(nodes) {
                 Some((weights, nodes)) => {
                     let give: f64 = rows.iter().map(|&r| nodes[r]).sum();
@@ -156,16 +160,15 @@ fn compliance_of_nodes(b: &Dense, rows: &[usize], weights: &[f64], give: f64) ->
     };
     let n = rows.len();
     let trace: f64 = (0..n).map(|i| entry(i, i)).sum();
-    Dense::from_fn(n, n, |i, j| give / trace * entry(i, j))
+    // Rows between given values have no nodes that give way.
+    let size = if trace > 0.0 { give / trace } else { 0.0 };
+    Dense::from_fn(n, n, |i, j| size * entry(i, j))
 }
 
 /// N: the multipliers, orthogonal in `f` and C, to which the compliance `f` of the nodes adds little beside C.
 fn soft(f: &Dense, c: &[f64]) -> Dense {
     let n = c.len();
     let none = Dense::zeros(n, 0);
-    if n == 0 || c.iter().all(|c| *c == 0.0) {
-        return none;
-    }
     let both = faer::Mat::from_fn(n, n, |i, j| f.get(i, j) + if i == j { c[i] } else { 0.0 });
     let Ok(eigen) = both.self_adjoint_eigen(faer::Side::Lower) else {
         return none;

@@ -42,7 +42,7 @@ pub struct Inequalities {
     /// A unit of each row's difference in the row of the scene; a list shorter than `rows` stands for ones.
     pub scale: Vec<f64>,
     /// The contact of each row; rows beyond the list are of one contact.
-    pub groups: Vec<Vec<[usize; 2]>>,
+    pub groups: Vec<[[usize; 2]; 3]>,
     /// The nodes with friction, by the places of their rows here.
     pub friction: Vec<FrictionNode>,
     /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
@@ -248,8 +248,8 @@ impl Inequalities {
     }
 
     /// The contact of a row, and its bodies.
-    pub fn groups_of(&self, row: usize) -> Vec<[usize; 2]> {
-        self.groups.get(row).cloned().unwrap_or_default()
+    pub fn groups_of(&self, row: usize) -> [[usize; 2]; 3] {
+        self.groups.get(row).copied().unwrap_or_default()
     }
 
     /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the

@@ -10,11 +10,7 @@ fn three() -> Nodes {
         (node.normal, node.tangential) = (2 * k, vec![2 * k + 1]);
         node
     });
-    let groups = vec![
-        vec![[0, 0], [3, 0]],
-        vec![[0, 0], [3, 0]],
-        vec![[0, 1], [3, 1]],
-    ];
+    let groups = [[0, 0], [0, 0], [0, 1]].map(|c| [c, [3, c[1]], c]).to_vec();
     Nodes::new(list.collect(), groups, FrictionTuning::DEFAULT)
 }
 
@@ -67,7 +63,7 @@ fn wander(comm: &SimpleCommunicator) {
     let [a, b, c] = scores(&nodes);
     assert!(a < c && c < b && b < -1e100, "{a} {b} {c}");
     let mut held = vec![false; 6];
-    nodes.sticking(&mut held);
+    Nodes::sticking(&nodes.list, &mut held);
     assert_eq!(held, [false, false, false, true, false, false]);
     let mut back = held.clone();
     back[1] = true;
@@ -85,7 +81,7 @@ fn the_contacts_of_a_body_change_in_turn() {
     with_session(|session| {
         let comm = session.comm();
         let mut nodes = three();
-        nodes.groups[2].push([3, 0]);
+        nodes.groups[2][2] = [3, 0];
         (0..=FrictionTuning::DEFAULT.waits).for_each(|_| {
             nodes.wander(5);
         });

@@ -156,7 +156,7 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
     fn hold(&mut self, next: &mut [bool], solved: &Solved) -> [bool; 2] {
         let judged = &solved.judged;
         let (mut before, mut score) = (next.to_vec(), judged.score.clone());
-        self.nodes.sticking(&mut before);
+        Nodes::sticking(&self.nodes.list, &mut before);
         self.nodes.score(judged.largest[1], &mut score);
         let mut held = before.clone();
         let added = self.rows.restore(&mut held, &score);

@@ -5,6 +5,7 @@ use crate::assembled::equations::Solved;
 use crate::assembled::exerted::{ExertedForces, RowSpring};
 use crate::assembled::potentials::Potentials;
 use fetifeti::inside::node::NodeState;
+use fetifeti::inside::nodes::Nodes;
 
 impl StickAndSlip<'_, '_> {
     /// Hands the states of the nodes to the equations: rows that hold, springs, given forces.
@@ -18,9 +19,8 @@ impl StickAndSlip<'_, '_> {
         };
         for node in &mut self.nodes.list {
             node.turn();
-            let sticks = node.state == NodeState::Stick;
-            node.tangential.iter().for_each(|&t| active[t] = sticks);
         }
+        Nodes::sticking(&self.nodes.list, active);
         let tangential = rows.tangential();
         let rigid = |r: &usize| rows.softness(*r) == 0.0;
         for r in (0..rows.len())
