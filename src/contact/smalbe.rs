@@ -187,7 +187,8 @@ impl Strategy<DualCourse> for Smalbe<'_> {
             let iterations = steps.iter().map(|s| s.iterations).sum();
             let run = KrylovRun::of_loop(iterations, status, Default::default());
             let loads = Loads::new(&self.method.problem, &self.method.dual());
-            return friction::recovered(self.method, loads, &self.state, run, seconds);
+            let tuning = &self.settings.tuning.friction;
+            return friction::recovered(self.method, tuning, loads, &self.state, run, seconds);
         }
         let run = ActiveSet::new(self.method, self.settings, Some(&self.state))?;
         run.end(steps, seconds, status)

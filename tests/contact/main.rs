@@ -11,6 +11,7 @@ mod failed;
 mod friction;
 mod friction_conic;
 mod friction_gallery;
+mod friction_limit;
 mod friction_mortar;
 mod friction_oracle;
 mod friction_reference;

@@ -4,7 +4,9 @@
 //! |---|---|
 //! | [`gaps`] | can all rows hold together? |
 //! | [`motions`] | does the load push a body away for ever? |
-//! | [`springs`] | the same of many rigid motions, by rigid bodies on springs |
+//! | [`springs`] | the same of many rigid motions, and with friction, by rigid bodies on springs |
+//! | [`carriers`] | which rows exert forces, alone or as nodes with friction |
+//! | [`cone`] | the forces that a node with friction can exert |
 //!
 //! Gaps are asked about before every loop. Of rigid motions few are asked about before the loop, by an exact method.
 //! With many the loop itself is the answer: multipliers λ_I ≥ 0 with Gᵀ λ = e are what it looks for, and where there
@@ -13,6 +15,8 @@
 //! that all rows leave free; where it has taken many steps; where it has failed; and before a strategy that would go on
 //! for ever.
 
+mod carriers;
+mod cone;
 mod gaps;
 mod motions;
 mod springs;
@@ -27,6 +31,7 @@ use crate::feti::LinearMethod;
 use crate::substructures::Problem;
 use crate::Result;
 
+pub use cone::FrictionCone;
 pub use motions::pushed_away;
 
 /// The questions about a problem. All are collective, and their errors name the bodies.
@@ -82,6 +87,20 @@ impl<'a> Existence<'a> {
         } else {
             Ok(())
         }
+    }
+
+    /// Whether the rows can carry the load where nodes with friction exert forces in `cones` alone. Coulomb's law may
+    /// have no solution even then. The search begins at `lambda`.
+    ///
+    /// # Errors
+    /// Bodies that slide, tip or fly away for ever, with the motion.
+    pub fn in_cones(
+        &self,
+        load: &KernelLoad,
+        lambda: &[f64],
+        cones: &[FrictionCone],
+    ) -> Result<()> {
+        motions::check_cones(self.problem, self.dual, (load, lambda), cones, self.tuning)
     }
 
     /// Whether a loop can begin with all candidates as equations: the load works on no motion that even these leave

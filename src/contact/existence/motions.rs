@@ -10,6 +10,7 @@ use std::collections::HashSet;
 
 use mpi::topology::SimpleCommunicator;
 
+use super::cone::FrictionCone;
 use super::springs;
 use crate::contact::tuning::Tuning;
 use crate::feti::jump::operator::Jump;
@@ -24,6 +25,7 @@ use crate::{Error, Result};
 use base::linalg::dense::Dense;
 use base::linalg::nnls::nnls;
 use base::linalg::sorted::distinct;
+use parallel::exchange::any;
 use parallel::parcels::Parcels;
 
 /// Directions of rows that differ by less in every entry are one, relative to the largest entry. Rigid motions of
@@ -55,7 +57,8 @@ pub fn check(
         (KernelMotion(rest.collect()), tuning.balanced)
     } else {
         let wanted = (&load.e[..], 0.1 * tuning.nearly_balanced * size);
-        let found = springs::uncarried_load(dual.comm(), natural, jump, (wanted, lambda), tuning);
+        let found =
+            springs::uncarried_load(dual.comm(), natural, (jump, &[]), (wanted, lambda), tuning);
         match found {
             Some(rest) => (rest, tuning.nearly_balanced),
             // The certificate at the end of the loop handles the undecided cases.
@@ -63,6 +66,90 @@ pub fn check(
         }
     };
     pushed_away(problem, dual, &rest, tolerance * size)
+}
+
+/// Returns an error that names the bodies and their motion if the load moves some of them away for ever against forces
+/// of friction in `cones`. The search begins at `lambda`. Collective.
+///
+/// # Errors
+/// Such bodies; PETSc's own errors.
+pub fn check_cones(
+    problem: &Problem,
+    dual: &Dual,
+    (load, lambda): (&KernelLoad, &[f64]),
+    cones: &[FrictionCone],
+    tuning: &Tuning,
+) -> Result<()> {
+    let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
+    if natural.r == 0 {
+        return Ok(());
+    }
+    let tolerance = tuning.nearly_balanced * load.largest;
+    let wanted = (&load.e[..], 0.1 * tolerance);
+    // Equations without a solution leave forces beside which the load is rounding.
+    let most = load.largest / tuning.springs_weak;
+    let is_far = |l: &f64| !l.is_finite() || l.abs() > most;
+    let far = any(comm, lambda.iter().any(is_far));
+    let nothing = vec![0.0; lambda.len()];
+    let begun = (wanted, if far { &nothing[..] } else { lambda });
+    let found = springs::uncarried_load(comm, natural, (jump, cones), begun, tuning);
+    match found {
+        Some(away) if away.largest() > tolerance => {
+            let seen = as_seen(dual, &away, cones);
+            pushed_away(problem, dual, &seen, tolerance.min(0.5 * seen.largest()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A motion against forces of friction as one sees it. Where a node slides it opens by μ times its slip in the proof,
+/// because forces lie in cones; in truth it stays closed. Collective.
+fn as_seen(dual: &Dual, away: &KernelMotion, cones: &[FrictionCone]) -> KernelMotion {
+    let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
+    let size = away.largest();
+    let known = natural.known();
+    let mut alpha = vec![0.0; known.n()];
+    known.add(1.0, away, &mut alpha);
+    let along = |i: usize| -> f64 {
+        let (columns, values) = natural.all.entries(i);
+        let terms = columns.iter().zip(values);
+        terms.map(|(&c, g)| g * alpha[c as usize]).sum()
+    };
+    let mut held = vec![false; jump.n_owned];
+    let little = 1e-6 * size;
+    for i in jump.rows_between_bodies().filter(|&i| jump.is_candidate(i)) {
+        held[i] = jump.law[i].bears(0.0) || along(i).abs() <= little;
+    }
+    for cone in cones {
+        let [normal, first, second] =
+            [0, 1, 2].map(|k| cone.rows.get(k).map_or(0.0, |&i| along(i)));
+        let slip = first.hypot(second);
+        let opens = -normal > cone.opening(slip) * (1.0 + 1e-3) + little;
+        held[cone.rows[0]] = !opens;
+        let sticks = !opens && slip <= little;
+        cone.rows[1..].iter().for_each(|&i| held[i] = sticks);
+    }
+    // The part of the motion along what is left free.
+    let free = natural.gram(comm, &held);
+    let mut basis: Vec<KernelMotion> = Vec::new();
+    let mut seen = KernelMotion::default();
+    for motion in free.unheld.iter().filter(|m| m.dot_with(away) != 0.0) {
+        let mut rest = motion.clone();
+        for other in &basis {
+            rest = rest.plus(-rest.dot_with(other) / other.square(), other);
+        }
+        if rest.square() > 1e-20 * motion.square() {
+            seen = seen.plus(away.dot_with(&rest) / rest.square(), &rest);
+            basis.push(rest);
+        }
+    }
+    let seen = match seen.largest() > little {
+        true => seen,
+        false => away.clone(),
+    };
+    // A name needs three digits. More of them would make a turn about a point far away of a slide.
+    let least = 1e-3 * seen.largest();
+    KernelMotion(seen.0.into_iter().filter(|e| e.1.abs() > least).collect())
 }
 
 /// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above

@@ -13,31 +13,40 @@
 //! To the question whether the rows can carry the load neither the stiffness of the springs nor c matters: it is 1, and
 //! c = −λ₊ for the λ of the loop that asks. Its springs carry at α = 0 what the loop has found, and a few Newton steps
 //! take the rest from rows that pull to others.
+//!
+//! The rows of a node with friction exert forces in its set K together: its term is ½ |Π_K s|², s = g α − c. It is
+//! convex and smooth, and no longer piecewise quadratic; each round then ends at what Newton's steps reach.
 
 use mpi::topology::SimpleCommunicator;
 
+use super::carriers::Carriers;
+use super::cone::{FrictionCone, NodeForce};
 use crate::contact::piecewise_quadratic::{minimise, PiecewiseQuadratic};
 use crate::contact::tuning::Tuning;
 use crate::feti::jump::operator::Jump;
 use crate::feti::projector::gram::Gram;
 use crate::feti::projector::kernel_motion::KernelMotion;
 use crate::feti::projector::natural::NaturalCoarse;
+use crate::feti::projector::rows::KernelRows;
 use parallel::exchange::{any, sum_all};
 
 /// The part of `e` that the rows cannot carry: none if it is below `enough` everywhere. `None` if this is not decided.
-/// `lambda` has forces on the owned rows that carry much of it, or zeros. The same on every rank. Collective.
+/// `lambda` has forces on the owned rows that carry much of it, or zeros; `cones` are the nodes with friction. The same
+/// on every rank. Collective.
 pub fn uncarried_load(
     comm: &SimpleCommunicator,
     natural: &NaturalCoarse,
-    jump: &Jump,
+    (jump, cones): (&Jump, &[FrictionCone]),
     ((e, enough), lambda): ((&[f64], f64), &[f64]),
     tuning: &Tuning,
 ) -> Option<KernelMotion> {
     let pre = lambda.iter().zip(&jump.law);
     let pre: Vec<f64> = pre.map(|(&l, law)| -law.project(l)).collect();
     let begun = any(comm, pre.iter().any(|c| *c != 0.0));
-    let mut springs = UnilateralSprings::new(comm, natural, jump, (e, &pre), tuning);
-    match springs.carry_load(enough, begun) {
+    let carriers = Carriers::new(jump, cones);
+    let mut springs = UnilateralSprings::new(comm, natural, (jump, carriers), (e, &pre), tuning);
+    springs.enough = enough;
+    match springs.carry_load(begun) {
         LoadBalance::Carried => Some(KernelMotion::default()),
         LoadBalance::Driven(away) => Some(away),
         LoadBalance::Undecided => None,
@@ -57,13 +66,14 @@ struct UnilateralSprings<'a> {
     comm: &'a SimpleCommunicator,
     natural: &'a NaturalCoarse,
     jump: &'a Jump,
-    /// The owned rows that may hold.
-    rows: Vec<usize>,
+    carriers: Carriers<'a>,
     /// The gaps of the owned rows, c.
     gap: &'a [f64],
     e: &'a [f64],
     /// ε D.
     weak: Vec<f64>,
+    /// A part of the load below this counts as carried.
+    enough: f64,
     tuning: &'a Tuning,
 }
 
@@ -71,15 +81,13 @@ impl<'a> UnilateralSprings<'a> {
     fn new(
         comm: &'a SimpleCommunicator,
         natural: &'a NaturalCoarse,
-        jump: &'a Jump,
+        (jump, carriers): (&'a Jump, Carriers<'a>),
         (e, gap): (&'a [f64], &'a [f64]),
         tuning: &'a Tuning,
     ) -> UnilateralSprings<'a> {
-        let between = jump.rows_between_bodies();
-        let rows: Vec<usize> = between.filter(|&i| jump.is_candidate(i)).collect();
         let known = natural.known();
         let mut weak = vec![0.0; known.n()];
-        for &i in &rows {
+        for &i in &carriers.rows {
             let (columns, values) = natural.all.entries(i);
             for (&c, g) in columns.iter().zip(values) {
                 weak[c as usize] += tuning.springs_weak * g * g;
@@ -96,16 +104,17 @@ impl<'a> UnilateralSprings<'a> {
             comm,
             natural,
             jump,
-            rows,
+            carriers,
             gap,
             e,
             weak,
+            enough: 0.0,
             tuning,
         }
     }
 
-    /// Whether springs carry the load up to `enough`. `begun` says that they nearly do at α = 0. Collective.
-    fn carry_load(&mut self, enough: f64, begun: bool) -> LoadBalance {
+    /// Whether springs carry the load up to what is nothing. `begun` says that they nearly do at α = 0. Collective.
+    fn carry_load(&mut self, begun: bool) -> LoadBalance {
         let (known, tuning) = (self.natural.known(), self.tuning);
         let (mut alpha, mut anchor) = (vec![0.0; known.n()], vec![0.0; known.n()]);
         let weak = self.weak.clone();
@@ -118,7 +127,7 @@ impl<'a> UnilateralSprings<'a> {
             alpha = springs.alpha;
             let along: Vec<f64> = alpha.iter().zip(&anchor).map(|(a, b)| a - b).collect();
             let rest: Vec<f64> = along.iter().zip(&self.weak).map(|(a, w)| a * w).collect();
-            let is_little = rest.iter().all(|v| v.abs() <= enough);
+            let is_little = rest.iter().all(|v| v.abs() <= self.enough);
             if !any(self.comm, !is_little) {
                 return LoadBalance::Carried;
             }
@@ -135,7 +144,7 @@ impl<'a> UnilateralSprings<'a> {
     /// g_iᵀα − c_i of the rows that may hold.
     fn stretch(&self, alpha: &[f64]) -> Vec<f64> {
         let along = self.along(alpha);
-        let gaps = self.rows.iter().map(|&i| self.gap[i]);
+        let gaps = self.carriers.rows.iter().map(|&i| self.gap[i]);
         along.iter().zip(gaps).map(|(s, c)| s - c).collect()
     }
 
@@ -146,12 +155,49 @@ impl<'a> UnilateralSprings<'a> {
             let terms = columns.iter().zip(values);
             terms.map(|(&c, g)| g * alpha[c as usize]).sum()
         };
-        self.rows.iter().map(of).collect()
+        self.carriers.rows.iter().map(of).collect()
     }
 
-    /// Whether a spring that is stretched by `s` pulls.
+    /// Whether a row is alone, and its spring pulls where it is stretched by `s`.
     fn pulls(&self, k: usize, s: f64) -> bool {
-        self.jump.law[self.rows[k]].bears(s)
+        self.carriers.alone[k] && self.jump.law[self.carriers.rows[k]].bears(s)
+    }
+
+    /// The forces of the springs.
+    fn forces(&self, stretch: &[f64]) -> Vec<f64> {
+        let alone = stretch.iter().enumerate();
+        let alone = alone.map(|(k, &s)| if self.pulls(k, s) { s } else { 0.0 });
+        let mut out: Vec<f64> = alone.collect();
+        for (cone, places, s) in self.carriers.nodes(stretch) {
+            let force = cone.project(s);
+            places.iter().zip(force).for_each(|(&k, f)| out[k] = f);
+        }
+        out
+    }
+
+    /// The rows as the derivatives of the forces have them: those whose springs are `on`, and of nodes the combinations
+    /// by the derivative of Π_K.
+    fn tangent(&self, on: &[bool], stretch: &[f64]) -> KernelRows {
+        let (all, rows) = (&self.natural.all, &self.carriers.rows);
+        let mut entries = Vec::new();
+        let mut add = |k: usize, of: usize, by: f64| {
+            let (columns, values) = all.entries(rows[of]);
+            let terms = columns.iter().zip(values);
+            entries.extend(terms.map(|(&c, g)| (rows[k] as u32, c, by * g)));
+        };
+        (0..rows.len())
+            .filter(|&k| on[k])
+            .for_each(|k| add(k, k, 1.0));
+        for (cone, places, s) in self.carriers.nodes(stretch) {
+            for (j, &of) in places.iter().enumerate() {
+                let mut unit = [0.0; 3];
+                unit[j] = 1.0;
+                let column = cone.derivative(s, unit);
+                let parts = places.iter().zip(column).filter(|p| p.1 != 0.0);
+                parts.for_each(|(&k, by)| add(k, of, by));
+            }
+        }
+        KernelRows::from_triplets(all.n(), entries)
     }
 
     /// The part of the load along `motion`, if the load drives it and no row stands against it. Collective.
@@ -163,13 +209,24 @@ impl<'a> UnilateralSprings<'a> {
         );
         let cut = |a: &f64| if a.abs() > against * largest { *a } else { 0.0 };
         let mut alpha: Vec<f64> = motion.iter().map(cut).collect();
-        let stands = self.along(&alpha).iter().zip(&self.rows).any(|(s, &i)| {
-            let size: f64 = self.natural.all.entries(i).1.iter().map(|g| g.abs()).sum();
-            self.jump.law[i].resistance(*s) > 10.0 * against * size * largest
-        });
+        let along = self.along(&alpha);
+        let rows = &self.carriers.rows;
+        let size = |k: usize| -> f64 {
+            let values = self.natural.all.entries(rows[k]).1;
+            values.iter().map(|g| g.abs()).sum()
+        };
+        let beyond = |k: usize, s: f64| s > 10.0 * against * size(k) * largest;
+        let mut stands = (0..rows.len()).filter(|&k| self.carriers.alone[k]);
+        let stands = stands.any(|k| beyond(k, self.jump.law[rows[k]].resistance(along[k])));
+        let mut nodes = self.carriers.nodes(&along);
+        let stands = stands || nodes.any(|(cone, places, w)| beyond(places[0], cone.support(w)[1]));
+        let nodes = self.carriers.nodes(&along);
+        let mut bounded = [nodes.map(|(cone, _, w)| cone.support(w)[0]).sum::<f64>()];
+        sum_all(self.comm, &mut bounded);
         let terms = |c: usize| [alpha[c] * self.e[c], alpha[c] * alpha[c]];
         let [work, square] = known.total(self.comm, terms);
-        if any(self.comm, stands) || work <= 0.0 {
+        // Forces that are bounded do work against it, too.
+        if any(self.comm, stands) || work <= (1.0 + against) * bounded[0] {
             return None;
         }
         alpha.iter_mut().for_each(|a| *a *= work / square);
@@ -203,7 +260,7 @@ impl<'a> Stretched<'a> {
     ) -> Stretched<'a> {
         Stretched {
             stretch: of.stretch(&alpha),
-            on: vec![true; of.rows.len()],
+            on: of.carriers.alone.clone(),
             of,
             alpha,
             anchor,
@@ -219,12 +276,10 @@ impl<'a> Stretched<'a> {
     fn downhill(&self) -> Vec<f64> {
         let (of, alpha) = (self.of, &self.alpha);
         let mut force = vec![0.0; alpha.len()];
-        for (k, &i) in of.rows.iter().enumerate() {
-            if of.pulls(k, self.stretch[k]) {
-                let (columns, values) = of.natural.all.entries(i);
-                for (&c, g) in columns.iter().zip(values) {
-                    force[c as usize] += g * self.stretch[k];
-                }
+        for (&i, f) in of.carriers.rows.iter().zip(of.forces(&self.stretch)) {
+            let (columns, values) = of.natural.all.entries(i);
+            for (&c, g) in columns.iter().zip(values) {
+                force[c as usize] += g * f;
             }
         }
         of.natural.known().sum(of.comm, &mut force);
@@ -244,20 +299,31 @@ impl PiecewiseQuadratic for Stretched<'_> {
             let pulls = |k: usize| of.pulls(k, self.stretch[k]);
             let now: Vec<bool> = (0..self.on.len()).map(pulls).collect();
             // The minimum for the springs that pulled is that of those which pull now.
-            if !any(of.comm, now != self.on) && self.steps > 0 {
+            let changed = now != self.on || !of.carriers.cones.is_empty();
+            if !any(of.comm, changed) && self.steps > 0 {
                 return false;
             }
             self.on = now;
         }
         self.steps += 1;
         let mut chosen = vec![false; all.n()];
-        let rows = of.rows.iter().zip(&self.on);
-        rows.for_each(|(&i, on)| chosen[i] = *on);
-        let mut a = shape.product(of.comm, all, all, |i| chosen[i]);
+        for (k, &i) in of.carriers.rows.iter().enumerate() {
+            chosen[i] = self.on[k] || !of.carriers.alone[k];
+        }
+        self.d = self.downhill();
+        let cones = any(of.comm, !of.carriers.cones.is_empty());
+        if cones && of.natural.known().largest(of.comm, &self.d) <= 0.1 * of.enough {
+            return false;
+        }
+        let mut a = match cones {
+            true => shape.product(of.comm, all, &of.tangent(&self.on, &self.stretch), |i| {
+                chosen[i]
+            }),
+            false => shape.product(of.comm, all, all, |i| chosen[i]),
+        };
         for c in (0..a.n()).filter(|&c| shape.has(c)) {
             a.set_diagonal(c, a.get(c, c) + of.weak[c]);
         }
-        self.d = self.downhill();
         Gram::new(shape, a).solve(&mut self.d);
         self.along = of.along(&self.d);
         let (d, alpha) = (&self.d, &self.alpha);
@@ -273,12 +339,18 @@ impl PiecewiseQuadratic for Stretched<'_> {
     fn slope(&self, t: f64) -> [f64; 2] {
         let (of, along) = (self.of, &self.along);
         let mut sums = [0.0, 0.0];
-        for (k, (stretch, along)) in self.stretch.iter().zip(along).enumerate() {
-            let s = stretch + t * along;
-            if of.pulls(k, s) {
+        let there = self.stretch.iter().zip(along).map(|(s, a)| s + t * a);
+        let there: Vec<f64> = there.collect();
+        for (k, (s, along)) in there.iter().zip(along).enumerate() {
+            if of.pulls(k, *s) {
                 sums[0] += s * along;
                 sums[1] += along * along;
             }
+        }
+        let nodes = of.carriers.nodes(&there).zip(of.carriers.nodes(along));
+        for ((cone, _, s), (_, _, along)) in nodes {
+            sums[0] += dot(cone.project(s), along);
+            sums[1] += dot(cone.derivative(s, along), along);
         }
         sum_all(of.comm, &mut sums);
         let [first, second] = self.constant;
@@ -295,4 +367,8 @@ impl PiecewiseQuadratic for Stretched<'_> {
         let size = known.largest(self.of.comm, &self.alpha);
         moved > 1e-14 * size
     }
+}
+
+fn dot(a: NodeForce, b: NodeForce) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -67,7 +67,8 @@ pub struct FrictionLagrangian<'a> {
     /// The states of the rows at the last minimum, and the number of minima with these states.
     kinds: Vec<u8>,
     same: usize,
-    /// Newton steps of this minimisation.
+    /// Minima so far, and Newton steps of this minimisation.
+    minima: usize,
     inner: usize,
     /// Newton steps in a row for which rows had to be put back.
     pub(super) slides: usize,
@@ -140,6 +141,7 @@ impl<'a> FrictionLagrangian<'a> {
             last: None,
             kinds: vec![0; n],
             same: 0,
+            minima: 0,
             inner: 0,
             slides: 0,
             trial: None,
@@ -223,6 +225,10 @@ impl<'a> FrictionLagrangian<'a> {
             return Ok((step, Proposal::GoOn));
         }
         self.inner = 0;
+        self.minima += 1;
+        if self.minima >= tuning.friction.doubted && self.minima.is_power_of_two() {
+            self.is_carried()?;
+        }
         let moved = self.follow_forces(&pull);
         let same = !any(comm, kinds != self.kinds);
         self.same = if same { self.same + 1 } else { 0 };
@@ -362,6 +368,7 @@ impl Strategy<DualCourse> for FrictionLagrangian<'_> {
         let last = self.last.map(|run| (run.residuals, run.estimate));
         let iterations = steps.iter().map(|s| s.iterations).sum();
         let run = KrylovRun::of_loop(iterations, status, last.unwrap_or_default());
-        recovered(method, self.loads, &state, run, seconds)
+        let tuning = &self.settings.tuning.friction;
+        recovered(method, tuning, self.loads, &state, run, seconds)
     }
 }

@@ -21,6 +21,7 @@ pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
+use super::existence::{Existence, FrictionCone};
 use super::modes::{CompliantRows, TurnedRows};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{State, Step};
@@ -32,6 +33,7 @@ use crate::Result;
 use base::ErrorKind;
 pub use judged::{error, nodes_at};
 pub use lagrangian::FrictionLagrangian;
+use node::Node;
 use nodes::{Changes, Nodes};
 use parallel::exchange::{any, max_all};
 pub use recovered::recovered;
@@ -41,6 +43,22 @@ pub use trial::StatesTrial;
 pub fn is_asked_for(method: &LinearMethod) -> bool {
     let soft = method.dual().stiffness.jump.is_soft;
     soft || any(method.session.comm(), !method.problem.friction.is_empty())
+}
+
+/// Whether forces of friction in the cones of `nodes` can balance the load; the search begins at `lambda`. Collective.
+///
+/// # Errors
+/// Bodies that slide, tip or fly away for ever.
+fn carried(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    loads: &Loads,
+    lambda: &[f64],
+    nodes: &[Node],
+) -> Result<()> {
+    let dual = method.dual();
+    let cones: Vec<FrictionCone> = nodes.iter().map(Node::cone).collect();
+    Existence::new(method, &dual, settings).in_cones(&loads.kernel, lambda, &cones)
 }
 
 /// The strategy.
@@ -141,10 +159,31 @@ impl<'a> Friction<'a> {
         solved
     }
 
-    /// Hands over to the safeguard, which begins from nothing.
-    fn give_up(&mut self) {
+    /// Hands over to the safeguard, which begins from nothing. Collective.
+    ///
+    /// # Errors
+    /// Bodies that slide, tip or fly away for ever.
+    fn give_up(&mut self) -> Result<()> {
         self.inner.state.lambda.fill(0.0);
+        self.hand_over()
+    }
+
+    /// Hands over to the safeguard, if forces of friction can balance the load at all. Collective.
+    ///
+    /// # Errors
+    /// Bodies that slide, tip or fly away for ever.
+    fn hand_over(&mut self) -> Result<()> {
         self.inner.state.safeguarded = true;
+        self.carried()
+    }
+
+    /// Whether forces of friction can balance the load. Collective.
+    ///
+    /// # Errors
+    /// Bodies that slide, tip or fly away for ever.
+    fn carried(&self) -> Result<()> {
+        let (lambda, nodes) = (&self.inner.state.lambda, &self.nodes.list);
+        carried(self.method, self.settings, &self.loads, lambda, nodes)
     }
 
     /// Whether the step has numbers for all rows: equations without digits may have none. Collective.
@@ -164,7 +203,7 @@ impl<'a> Friction<'a> {
         let (_, load) = self.loads.with_multipliers(problem, &dual, &given)?;
         drop(dual);
         let mut active = self.inner.state.active.clone();
-        Nodes::sticking(&self.nodes.list, &mut active);
+        Nodes::holding(&self.nodes.list, &mut active);
         let mut scores = vec![0.0; active.len()];
         self.nodes.score(self.inner.length, &mut scores);
         let mut held = active.clone();
@@ -176,8 +215,13 @@ impl<'a> Friction<'a> {
         let others = pairs.filter(|(_, law)| !law.is_friction());
         others.for_each(|((active, held), _)| *active = held);
         if self.nodes.slides(put_back > 0) {
-            // Which body it is, and its motion: that of the load beside all forces of friction that are given.
-            self.inner.hold(&mut active, &load, None)?;
+            // The load drives a body beside all forces of friction that are given.
+            if let Err(error) = self.inner.hold(&mut active, &load, None) {
+                // Its motion has a better name where no forces of friction at all balance the load. They do in a press
+                // fit, whose forces the shape of bodies bounds.
+                self.carried()?;
+                return Err(error);
+            }
         }
         Ok(restored)
     }
@@ -204,7 +248,7 @@ impl Strategy<DualCourse> for Friction<'_> {
             let (mut step, status, change) = match self.solve(renewal == 0) {
                 // States on the way may leave bodies too loose for the natural coarse problem. Springs hold them.
                 Err(e) if e.kind() == ErrorKind::NotConverged => {
-                    self.give_up();
+                    self.give_up()?;
                     let none = Step::without(ContactType::ActiveSet);
                     return Ok((whole.unwrap_or(none), Proposal::GoOn));
                 }
@@ -216,7 +260,7 @@ impl Strategy<DualCourse> for Friction<'_> {
             }
             // Equations of states on the way may have no solution, or one without digits. Springs have one.
             if status.broke_down() || !self.is_finite() {
-                self.give_up();
+                self.give_up()?;
                 return Ok((step, Proposal::GoOn));
             }
             if !status.converged() {
@@ -248,8 +292,8 @@ impl Strategy<DualCourse> for Friction<'_> {
             self.inner.tight &= still;
             if !(settled && stays) || is_last {
                 if self.nodes.wander(step.wrong) {
+                    self.hand_over()?;
                     self.rest()?;
-                    self.inner.state.safeguarded = true;
                 }
                 return Ok((step, Proposal::GoOn));
             }
@@ -264,7 +308,12 @@ impl Strategy<DualCourse> for Friction<'_> {
         seconds: f64,
         status: Status,
     ) -> Result<LinearSolution> {
+        let free = self.method.dual().natural.unheld().to_vec();
         self.rest()?;
+        // Springs across slips have said where bodies are. The rows that stay may not hold them.
+        if status.converged() {
+            self.method.system.settle(free);
+        }
         self.inner.end(steps, seconds, status)
     }
 }

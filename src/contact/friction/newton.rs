@@ -9,6 +9,7 @@
 //! a spring, so that rows which depend on each other do no harm, and a row that has to be put back to hold a body is a
 //! spring from where the body is. φ falls along each step, because the springs are symmetric and semidefinite.
 
+use super::carried;
 use super::lagrangian::FrictionLagrangian;
 use super::node::NodeState;
 use super::nodes::Nodes;
@@ -21,6 +22,7 @@ use crate::status::Status;
 use crate::Result;
 use base::ErrorKind;
 use parallel::exchange::any;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// A Newton step.
@@ -132,8 +134,8 @@ impl FrictionLagrangian<'_> {
     }
 
     /// Hands the equations at the present point to the method. Springs across slips are at most `softest` times softer
-    /// than others. Returns whether rows had to be put back, because the others leave a body loose that the load
-    /// drives. Collective.
+    /// than others, but for those without which the load drives a body. Returns whether other rows had to be put back,
+    /// because what holds leaves a body loose that the load drives. Collective.
     fn pose(&mut self, softest: f64) -> Result<bool> {
         let (method, comm) = (self.method, self.method.session.comm());
         let pull = self.point.as_ref().map(|p| self.penalty().pull(p));
@@ -147,7 +149,7 @@ impl FrictionLagrangian<'_> {
             };
         }
         let mut restored = false;
-        let mut active = loop {
+        let active = loop {
             self.turn()?;
             let given = Nodes::given(&self.nodes, self.law.len());
             let dual = method.dual();
@@ -161,26 +163,38 @@ impl FrictionLagrangian<'_> {
                 })
                 .collect();
             Nodes::sticking(&self.nodes, &mut active);
+            // Springs across slips hold, too: forces turn with the slips. Very soft ones do where nothing else does.
+            let softer: BTreeMap<usize, f64> = self.softer(&pull).collect();
+            for (&across, softer) in &softer {
+                active[across] = *softer < softest;
+            }
             let score = |i: usize| match &self.point {
+                Some(_) if softer.contains_key(&i) => 1.0 / softer[&i],
                 Some(point) if self.law[i].is_friction() => -point.gap[i].abs(),
                 Some(point) => point.gap[i],
                 None => -self.compliance[i],
             };
             if !restored && self.slides > self.settings.tuning.friction.slides {
-                // Which body slides away, and its motion: that of the load beside all given forces of friction.
+                // Which body slides away, and its motion: that of the load beside all given forces of friction, or one
+                // that no forces of friction balance.
                 let score = |i: usize| match self.law[i].is_friction() {
                     true => f64::NEG_INFINITY,
                     false => score(i),
                 };
                 let mut held = active.clone();
-                self.repairs.hold(&dual, &mut held, &score, &kernel)?;
+                if let Err(error) = self.repairs.hold(&dual, &mut held, &score, &kernel) {
+                    self.is_carried()?;
+                    return Err(error);
+                }
             }
-            restored |= self.repairs.hold(&dual, &mut active, &score, &kernel)? > 0;
+            let free = active.clone();
+            self.repairs.hold(&dual, &mut active, &score, &kernel)?;
             drop(dual);
+            let back = |i: &usize| active[*i] && !free[*i] && !softer.contains_key(i);
+            restored |= any(comm, (0..active.len()).any(|i| back(&i)));
             let mut sticks = false;
             for node in &mut self.nodes {
-                let back = node.tangential.iter().any(|&t| active[t]);
-                if back && node.state != NodeState::Stick {
+                if node.state != NodeState::Stick && node.tangential.iter().any(back) {
                     node.state = NodeState::Stick;
                     sticks = true;
                 }
@@ -192,7 +206,7 @@ impl FrictionLagrangian<'_> {
             }
         };
         self.slides = if restored { self.slides + 1 } else { 0 };
-        let compliance = self.soften(&mut active, &pull, softest);
+        let compliance = self.soften(&pull);
         let jumps = self.jumps(&compliance, &pull);
         self.springs.soften(&compliance);
         method.set_active(&active)?;
@@ -205,21 +219,39 @@ impl FrictionLagrangian<'_> {
         Ok(restored)
     }
 
-    /// The compliance of the rows in the equations. Rows across slips come into the set, unless they are very soft.
-    fn soften(&self, active: &mut [bool], pull: &Option<Vec<f64>>, softest: f64) -> Vec<f64> {
+    /// Whether forces of friction can balance the load. Collective.
+    ///
+    /// # Errors
+    /// Bodies that slide, tip or fly away for ever.
+    pub(super) fn is_carried(&self) -> Result<()> {
+        let lambda = self.at.lambda.to_vec()?;
+        carried(
+            self.method,
+            self.settings,
+            &self.loads,
+            &lambda,
+            &self.nodes,
+        )
+    }
+
+    /// How much softer than others the spring across each slip is, by its row.
+    fn softer<'b>(&'b self, pull: &'b Option<Vec<f64>>) -> impl Iterator<Item = (usize, f64)> + 'b {
+        let nodes = self.nodes.iter().zip(&self.discs);
+        nodes.filter_map(move |(node, disc)| {
+            let [a, b] = disc.of(pull.as_ref()?);
+            Some((node.slips_beside()?, a.hypot(b) / disc.radius))
+        })
+    }
+
+    /// The compliance of the rows in the equations.
+    fn soften(&self, pull: &Option<Vec<f64>>) -> Vec<f64> {
         let mut compliance = self.compliance.clone();
         for (i, law) in self.law.iter().enumerate() {
             if !law.is_inequality() && !law.is_friction() {
                 compliance[i] = 0.0;
             }
         }
-        for (node, disc) in self.nodes.iter().zip(&self.discs) {
-            let (Some(across), Some(s)) = (node.slips_beside(), pull) else {
-                continue;
-            };
-            let [a, b] = disc.of(s);
-            let softer = a.hypot(b) / disc.radius;
-            active[across] = softer < softest;
+        for (across, softer) in self.softer(pull) {
             compliance[across] *= softer;
         }
         compliance

@@ -165,8 +165,17 @@ impl Nodes {
         waits.collect()
     }
 
-    /// Which tangential rows hold because their nodes stick, into `held`. Where rows may have to be put back no others
-    /// count: springs across slips give way as far as a body slides, and the solution has given forces in their place.
+    /// Which tangential rows hold, into `held`: those of nodes that stick, and springs across slips. A body near its
+    /// limit stands although all its nodes slip, because their forces turn with the slips.
+    pub fn holding(list: &[Node], held: &mut [bool]) {
+        for node in list {
+            for (&t, holds) in node.tangential.iter().zip(node.holds()) {
+                held[t] = holds;
+            }
+        }
+    }
+
+    /// Which tangential rows hold because their nodes stick, into `held`.
     pub fn sticking(list: &[Node], held: &mut [bool]) {
         for node in list {
             let sticks = node.state == NodeState::Stick;

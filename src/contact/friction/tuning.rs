@@ -70,8 +70,11 @@ pub struct FrictionTuning {
     pub tips: usize,
     /// MPRGP's projected steps are at most as many times longer than 2/‖A‖.
     pub longer: f64,
-    /// A body slides away if nothing but friction beyond its bound has held it after this many steps in a row.
+    /// A body may slide away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,
+    /// After so many minima of the augmented Lagrangian, and after each power of two, the question is whether friction
+    /// can hold the bodies at all.
+    pub doubted: usize,
 }
 
 impl FrictionTuning {
@@ -105,5 +108,6 @@ impl FrictionTuning {
         tips: 2,
         longer: 100.0,
         slides: 8,
+        doubted: 16,
     };
 }

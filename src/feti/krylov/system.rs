@@ -14,6 +14,7 @@ use crate::feti::deflation::matrices::DeflationMatrices;
 use crate::feti::deflation::Deflation;
 use crate::feti::jump::turn::Turn;
 use crate::feti::operators::dual::Dual;
+use crate::feti::projector::kernel_motion::KernelMotion;
 use crate::substructures::Problem;
 use crate::Result;
 use petsc::{signals, Session, Vec as PetscVec};
@@ -116,6 +117,11 @@ impl DualSystem {
     /// Replaces the multipliers of rows that do not hold and have a law with given ones; empty: they have none.
     pub(crate) fn set_given_multipliers(&self, given: Vec<f64>) {
         self.dual.borrow_mut().stiffness.jump.given_multipliers = given;
+    }
+
+    /// Notes which motions alone are free; see [`NaturalCoarse::settle`].
+    pub(crate) fn settle(&self, free: Vec<KernelMotion>) {
+        self.dual.borrow_mut().natural.settle(free);
     }
 
     /// Replaces the right-hand sides of the rows.

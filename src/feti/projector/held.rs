@@ -55,9 +55,16 @@ impl NaturalCoarse {
         }
     }
 
-    /// Combinations of kernel vectors on which all rows vanish.
+    /// Combinations of kernel vectors on which all rows vanish, and whatever else holds bodies.
     pub fn unheld(&self) -> &[KernelMotion] {
-        self.gtg.as_ref().map_or(&[], |gtg| &gtg.gram.unheld)
+        let of_rows = || self.gtg.as_ref().map_or(&[][..], |gtg| &gtg.gram.unheld);
+        self.settled.as_deref().unwrap_or_else(of_rows)
+    }
+
+    /// Notes that these motions alone are free, because more holds bodies than the rows. It is forgotten where rows
+    /// change.
+    pub fn settle(&mut self, free: Vec<KernelMotion>) {
+        self.settled = Some(free);
     }
 }
 

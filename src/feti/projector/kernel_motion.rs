@@ -71,6 +71,15 @@ impl KernelMotion {
         self.0.iter().map(|e| e.1 * e.1).sum()
     }
 
+    /// Σ of the products of the coefficients with those of another motion.
+    pub fn dot_with(&self, other: &KernelMotion) -> f64 {
+        let of = |e: &(u32, f64)| match other.0.binary_search_by_key(&e.0, |o| o.0) {
+            Ok(k) => e.1 * other.0[k].1,
+            Err(_) => 0.0,
+        };
+        self.0.iter().map(of).sum()
+    }
+
     /// α times the motion.
     pub fn times(&self, alpha: f64) -> KernelMotion {
         KernelMotion(self.0.iter().map(|&(c, v)| (c, alpha * v)).collect())

@@ -22,6 +22,7 @@ use super::gram_matrix::GramMatrix;
 use super::gram_pattern::{FactorSharing, GramPattern};
 use super::graph::BodyGraph;
 use super::gtg::Gtg;
+use super::kernel_motion::KernelMotion;
 use super::pattern::meeting;
 use super::rounding::rounding_of_rows;
 use super::rows::KernelRows;
@@ -86,6 +87,8 @@ pub struct NaturalCoarse {
     mended: bool,
     /// (Gᵀ Q G)⁻¹, where a body floats.
     pub gtg: Option<Gtg>,
+    /// The motions that are left free where more holds than the rows.
+    pub(super) settled: Option<Vec<KernelMotion>>,
     prefix: String,
 }
 
@@ -126,6 +129,7 @@ impl NaturalCoarse {
             qg: None,
             mended: false,
             gtg: None,
+            settled: None,
             prefix: prefix.into(),
         };
         if r > 0 {
@@ -244,6 +248,7 @@ impl NaturalCoarse {
             return Ok(());
         }
         let (session, comm) = (&stiffness.session, stiffness.comm());
+        self.settled = None;
         let gram = self.gram(comm, &stiffness.jump.active);
         self.g = self.without_noise(self.assemble_g(stiffness), &gram);
         self.qg = match self.projector {

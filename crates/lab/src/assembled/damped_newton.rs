@@ -175,7 +175,7 @@ impl<'a> DampedNewton<'a> {
         let score = |(mu, gap): (&f64, f64)| if *mu > 0.0 { *mu } else { gap };
         let score: Vec<f64> = self.multiplier.iter().zip(gaps).map(score).collect();
         out.active = set(&self.multiplier);
-        self.rows.restore(&mut out.active, &score);
+        self.rows.restore(&mut out.active, &score, []);
         out.priority = (0..score.len()).collect();
         out.priority.sort_by(|a, b| score[*b].total_cmp(&score[*a]));
         Ok(out)

@@ -285,7 +285,7 @@ impl<'a> Equations<'a> {
         // Where there is friction, what holds bodies depends on the states of nodes.
         let restored = match rows.has_laws() {
             true => Vec::new(),
-            false => rows.restore(&mut next, &judged.score),
+            false => rows.restore(&mut next, &judged.score, []),
         };
         let met = match self.solve {
             OuterSolve::Refined(_) => certificate.holds(),

@@ -254,9 +254,20 @@ impl Inequalities {
 
     /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the
     /// order of their scores; one is added if it removes a motion that ties, equations, springs, prescribed values and
-    /// the active rows leave free. Returns the added rows.
-    pub fn restore(&self, active: &mut [bool], score: &[f64]) -> Vec<usize> {
+    /// the active rows leave free; `combined` are rows with coefficients that hold together, such as springs across
+    /// slips. Returns the added rows.
+    pub fn restore(
+        &self,
+        active: &mut [bool],
+        score: &[f64],
+        combined: impl IntoIterator<Item = [(usize, f64); 2]>,
+    ) -> Vec<usize> {
         let mut held = self.held.clone();
+        for rows in combined {
+            let parts = rows.iter().map(|&(r, c)| (&self.forms[r], c));
+            let form = parts.flat_map(|(form, c)| form.iter().map(move |&(k, v)| (k, c * v)));
+            held.insert(&form.collect(), 0.0);
+        }
         let (mut on, mut off): (Vec<usize>, Vec<usize>) = (0..self.len()).partition(|&r| active[r]);
         for r in on.drain(..) {
             held.insert(&self.forms[r], 0.0);

@@ -159,7 +159,8 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
         Nodes::sticking(&self.nodes.list, &mut before);
         self.nodes.score(judged.largest[1], &mut score);
         let mut held = before.clone();
-        let added = self.rows.restore(&mut held, &score);
+        let across = self.nodes.list.iter().filter_map(|node| self.across(node));
+        let added = self.rows.restore(&mut held, &score, across);
         let restored = self.nodes.stick(&self.alone, &before, &held);
         self.slides = self.nodes.slides(!added.is_empty());
         let tangential = self.rows.tangential();

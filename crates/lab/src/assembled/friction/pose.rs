@@ -4,7 +4,7 @@ use super::{StickAndSlip, STIFFER};
 use crate::assembled::equations::Solved;
 use crate::assembled::exerted::{ExertedForces, RowSpring};
 use crate::assembled::potentials::Potentials;
-use fetifeti::inside::node::NodeState;
+use fetifeti::inside::node::{Node, NodeState};
 use fetifeti::inside::nodes::Nodes;
 
 impl StickAndSlip<'_, '_> {
@@ -65,24 +65,28 @@ impl StickAndSlip<'_, '_> {
             })
             .collect();
         for (node, &held) in self.nodes.list.iter().zip(&self.held) {
-            let (NodeState::Slip(d), [a, b]) = (node.state, &node.tangential[..]) else {
+            let Some(across) = self.across(node).filter(|_| !held) else {
                 continue;
             };
-            if held || !node.holds()[1] {
-                continue;
-            }
-            let least = self.tuning.rigid * self.give[*a].max(self.give[*b]);
-            let own = rows.softness(*b) * rows.scale_of(*b).powi(2);
+            let [a, b] = across.map(|(row, _)| row);
+            let least = self.tuning.rigid * self.give[a].max(self.give[b]);
+            let own = rows.softness(b) * rows.scale_of(b).powi(2);
             springs.push(RowSpring {
-                rows: vec![
-                    (*a, -d[1] * rows.scale_of(*a)),
-                    (*b, d[0] * rows.scale_of(*b)),
-                ],
+                rows: across.to_vec(),
                 stiffness: 1.0 / (node.across().max(least) + own),
                 rest: 0.0,
             });
         }
         springs
+    }
+
+    /// The rows across the slip of a node with their coefficients, where a spring holds them.
+    pub(super) fn across(&self, node: &Node) -> Option<[(usize, f64); 2]> {
+        let (NodeState::Slip(d), &[a, b]) = (node.state, &node.tangential[..]) else {
+            return None;
+        };
+        let scale = |r: usize| self.rows.scale_of(r);
+        node.holds()[1].then(|| [(a, -d[1] * scale(a)), (b, d[0] * scale(b))])
     }
 
     /// Hands the renewed forces to the equations of the same states. The matrix stays, unless springs have changed
