@@ -29,6 +29,7 @@ use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::substructures::Law;
 use crate::Result;
+use base::ErrorKind;
 use parallel::exchange::{any, max_all, total};
 
 /// The strategy.
@@ -151,7 +152,13 @@ impl<'a> FrictionLagrangian<'a> {
         search.set_springs();
         let found = handed.lambda.iter().any(|l| *l != 0.0);
         if any(method.session.comm(), handed.safeguarded && found) {
-            search.start_from(&handed)?;
+            match search.start_from(&handed) {
+                // Given forces alone may leave bodies too loose for the natural coarse problem.
+                Err(e) if e.kind() == ErrorKind::NotConverged => {
+                    search.at = Iterate::new(&method.dual(), search.loads.clone())?;
+                }
+                other => other?,
+            }
         }
         Ok(search)
     }

@@ -134,7 +134,7 @@ impl FrictionLagrangian<'_> {
     }
 
     /// Hands the equations at the present point to the method. Springs across slips are at most `softest` times softer
-    /// than others, but for those without which the load drives a body. Returns whether other rows had to be put back,
+    /// than others, but for those without which the load drives a body; with 0 there are none. Returns whether other rows had to be put back,
     /// because what holds leaves a body loose that the load drives. Collective.
     fn pose(&mut self, softest: f64) -> Result<bool> {
         let (method, comm) = (self.method, self.method.session.comm());
@@ -164,7 +164,8 @@ impl FrictionLagrangian<'_> {
                 .collect();
             Nodes::sticking(&self.nodes, &mut active);
             // Springs across slips hold, too: forces turn with the slips. Very soft ones do where nothing else does.
-            let softer: BTreeMap<usize, f64> = self.softer(&pull).collect();
+            let softer = self.softer(&pull).filter(|_| softest > 0.0);
+            let softer: BTreeMap<usize, f64> = softer.collect();
             for (&across, softer) in &softer {
                 active[across] = *softer < softest;
             }

@@ -9,9 +9,11 @@ use crate::contact::state::State;
 use crate::feti::krylov::iterate::KrylovRun;
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
+use crate::feti::projector::kernel_motion::KernelMotion;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::substructures::Law;
 use crate::Result;
+use base::ErrorKind;
 
 /// The solution at the multipliers and the set of `state`; see [`at_state`]. `run` says how the loop has ended.
 ///
@@ -27,7 +29,31 @@ pub fn recovered(
     run: KrylovRun,
     seconds: f64,
 ) -> Result<LinearSolution> {
-    let mut at = at_state(method, loads, state)?;
+    let mut at = at_state(method, loads.clone(), state)?;
+    if method.dual().natural.unheld().is_empty() {
+        at.place(&method.dual())?;
+        return method.recover(at, run, seconds);
+    }
+    match placed_across(method, tuning, &mut at, state) {
+        // Where several contacts meet, rows across slips may depend on others.
+        Err(e) if e.kind() == ErrorKind::NotConverged => {
+            at = at_state(method, loads, state)?;
+            at.place(&method.dual())?;
+        }
+        Err(e) => return Err(e),
+        Ok(free) => method.system.settle(free),
+    }
+    method.recover(at, run, seconds)
+}
+
+/// Places bodies by the rows that hold at `state` and by those across slips. Returns the motions that these leave free.
+/// Collective.
+fn placed_across(
+    method: &LinearMethod,
+    tuning: &FrictionTuning,
+    at: &mut Iterate,
+    state: &State,
+) -> Result<Vec<KernelMotion>> {
     let mut nodes = nodes_at(method, tuning, &state.lambda, &state.active)?;
     let mut turned = TurnedRows::of(method);
     let turns = Nodes::turns(&mut nodes);
@@ -45,8 +71,7 @@ pub fn recovered(
     at.turn(&turned.back())?;
     method.system.set_given_multipliers(given_at(method, state));
     method.set_active(&state.active)?;
-    method.system.settle(free);
-    method.recover(at, run, seconds)
+    Ok(free)
 }
 
 /// λ and the `loads` of the problem at the multipliers and the set of `state`, in the directions that were given: what
