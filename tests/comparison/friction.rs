@@ -114,14 +114,66 @@ fn elastic_slip_and_sides_that_do_not_match_in_the_plane() {
     }
 }
 
+/// Each load step begins where the method's own one before has ended: all of them are right, and so is their sum.
+fn check_load_steps(name: &str, text: &str, n: usize) {
+    for cores in ["1", "2"] {
+        let what = format!("{name}, {cores} cores");
+        let report = compared(name, text, cores);
+        check(&report, &what);
+        let facts = report.facts.contact.expect("inequalities");
+        assert_eq!((facts.load_steps, facts.solved), (n, n), "{what}");
+        for row in report.rows.iter().filter(|r| solved(r)) {
+            let what = format!("{what}: {row:?}");
+            let steps = &row.run.load_steps;
+            assert_eq!(steps.len(), n, "{what}");
+            let total = row.run.contact.expect("what became of the inequalities");
+            assert_eq!(total.outer, steps.iter().map(|s| s.contact.outer).sum());
+            assert_eq!(row.run.iterations, steps.iter().map(|s| s.iterations).sum());
+            assert!(row.run.from_ours.expect("a distance") < 1e-6, "{what}");
+            for step in steps {
+                assert_eq!(step.contact.differ, Some(0), "{what}");
+                assert!(step.contact.forces.expect("forces") < 1e-5, "{what}");
+                assert!(step.contact.law.expect("laws") < 1e-5, "{what}");
+                assert!(step.error.expect("an error") < 1e-6, "{what}");
+                assert!(step.residual.expect("a residual") < 1e-8, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn methods_agree_in_load_cycles() {
+    let text = include_str!("../data/friction.json");
+    let cases: Value = serde_json::from_str(text).expect("JSON");
+    let cycle = cases["cycle"]["scene"].as_str().expect("a text");
+    check_load_steps("cycle", &format!("title = \"cycle\"\n{cycle}"), 4);
+    let steps = "[steps]\ntimes = [1, 2, 3]\nload = \"if(t < 2.5, 1 - 0.6*(t - 1), 0.8)\"\n";
+    let laws = "gap = \"0.005*(x + z)\"\nfriction = 0.25\nstick_stiffness = 2";
+    let text = blocks(FLAT, &format!("{laws}\n{steps}"));
+    check_load_steps("cycle in space", &text, 3);
+}
+
+/// A plane drags the block on it to the right, to the left and lifts off its left part.
+#[test]
+fn methods_agree_on_an_obstacle_that_drags() {
+    let text = "title = \"plane\"\nphysics = \"elasticity\"\n\
+                [[body]]\nname = \"block\"\nsize = [2, 1]\nelements = [8, 4]\nsubdomains = [2, 1]\n\
+                young = 1\npoisson = 0.3\ndirichlet = { top = { x = 0, y = \"-0.02 - 0.01*x\" } }\n\
+                [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\nfriction = 0.3\n\
+                plane = { point = [0, 0], normal = [0, 1] }\nmove = [0.02, 0.002]\n\
+                [steps]\ntimes = [1, 2, 3, 4]\ngap = \"if(t < 3, t/2, 2.2 - t/2)\"\n";
+    check_load_steps("plane", text, 4);
+}
+
 #[test]
 fn what_is_not_compared_is_said() {
     let text = include_str!("../data/friction.json");
     let cases: Value = serde_json::from_str(text).expect("JSON");
-    let cycle = SceneFile::new("cycle", cases["cycle"]["scene"].as_str().expect("a text"));
+    let cycle = cases["cycle"]["scene"].as_str().expect("a text");
+    let cycle = SceneFile::new("renewed", &format!("{cycle}\nupdate = true\n"));
     let output = fetifeti(&["compare", cycle.path()]);
     assert_eq!(output.code, 2);
-    let expected = "has friction and 4 load steps";
+    let expected = "has `update` in [steps]";
     assert!(output.stderr.contains(expected), "{}", output.stderr);
     let push = SceneFile::new("push", cases["push"]["scene"].as_str().expect("a text"));
     let report = push.compare(&["--with", "bddc"]);

@@ -126,7 +126,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
                 return Ok(Fate::NotConverged(message));
             }
             let active = outcome.contact.map(|c| c.active).unwrap_or_default();
-            let verdict = match judge(session, scene, &[(file.clone(), active)]) {
+            let verdict = match judge(session, scene, &[vec![(file.clone(), active)]]) {
                 Ok(verdict) => verdict,
                 Err(why) if why.is_input() => return Ok(Fate::Undecided(why.to_string())),
                 Err(other) => return Err(other),

@@ -191,6 +191,19 @@ impl Scene {
         self.steps.as_ref().map_or(1, |s| s.times.len())
     }
 
+    /// The scene up to load step `step`, which is then the last one.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a step that the scene does not have.
+    pub fn until(&self, step: usize) -> Result<Scene> {
+        Factors::of(&self.steps, step)?;
+        let mut out = self.clone();
+        if let Some(steps) = &mut out.steps {
+            steps.times.truncate(step + 1);
+        }
+        Ok(out)
+    }
+
     /// The nodal load from volume and side loads; an error if a value is not finite.
     pub(super) fn nodal_load(
         &self,

@@ -1,5 +1,6 @@
 //! The types of a loop around the assembled problem: tolerances, steps, its end.
 
+use super::equations::Preconditioner;
 use super::exerted::ExertedForces;
 use super::refine::Refiner;
 use base::Result;
@@ -31,16 +32,31 @@ pub enum OuterSolve<'a> {
     Refined(&'a Refiner<'a>),
 }
 
+/// Where a loop begins.
+#[derive(Clone, Copy)]
+pub enum OuterStart<'a> {
+    /// At the initial set, where all nodes stick, and u = 0.
+    Cold,
+    /// At this set, which is the only one.
+    Given(&'a [bool]),
+    /// Where the loop of the load step before has ended.
+    After(&'a ActiveSetEnd),
+}
+
 /// The result of the loop.
 pub struct ActiveSetEnd {
     /// The solution.
     pub u: PetscVec,
     /// The active set.
     pub active: Vec<bool>,
+    /// The active set, and the tangential rows that follow from it where their nodes stick.
+    pub held: Vec<bool>,
     /// Multipliers of the rows.
     pub lambda: Vec<f64>,
-    /// B u − c.
+    /// B u − c, less what rows give way.
     pub gaps: Vec<f64>,
+    /// The last preconditioner.
+    pub(super) preconditioner: Preconditioner,
     /// Number of systems of equations that were solved, one for each set or Newton step.
     pub steps: usize,
     /// Inner iterations of all steps.
@@ -111,6 +127,8 @@ pub struct SetState {
     pub fewest: Option<usize>,
     /// Forces of rows that do not hold.
     pub exerted: ExertedForces,
+    /// The multipliers where a loop begins with friction; empty: none.
+    pub lambda: Vec<f64>,
 }
 
 /// Numbers of one step.

@@ -92,6 +92,16 @@ impl Solved {
     }
 }
 
+/// A preconditioner, and the active set and springs for which it was built.
+#[derive(Clone, Default)]
+pub(super) struct Preconditioner {
+    /// The solver that has it.
+    ksp: Option<Ksp>,
+    active: Vec<bool>,
+    exerted: ExertedForces,
+    is_built: bool,
+}
+
 /// The solver of one set after the other.
 pub(super) struct Equations<'a> {
     session: &'a Session,
@@ -102,15 +112,11 @@ pub(super) struct Equations<'a> {
     solve: OuterSolve<'a>,
     /// The present u, the start of the next solve.
     u: PetscVec,
-    ksp: Option<Ksp>,
-    /// The active set for which the preconditioner was built, and its springs.
-    built: (Vec<bool>, ExertedForces),
+    preconditioner: Preconditioner,
     /// The groups of the last set, where it is solved again.
     groups: Option<ActiveGroups>,
     /// Seconds for matrices and preconditioners.
     pub setup: f64,
-    /// Whether a preconditioner was built.
-    begun: bool,
 }
 
 impl<'a> Equations<'a> {
@@ -133,11 +139,9 @@ impl<'a> Equations<'a> {
             solvers,
             tolerances,
             solve,
-            ksp: None,
-            built: Default::default(),
+            preconditioner: Preconditioner::default(),
             groups: None,
             setup: 0.0,
-            begun: false,
         })
     }
 
@@ -146,8 +150,17 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// Those of its source.
     pub fn start(&mut self) -> Result<()> {
-        self.ksp = Some((self.solvers)()?);
+        self.preconditioner.ksp = Some((self.solvers)()?);
         Ok(())
+    }
+
+    /// Goes on where another loop has ended, with its preconditioner. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn go_on(&mut self, end: &ActiveSetEnd) -> Result<()> {
+        self.preconditioner = end.preconditioner.clone();
+        self.u.copy_from(&end.u)
     }
 
     /// Whether solutions are refined.
@@ -170,7 +183,7 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// PETSc's.
     pub fn restart(&mut self, u: &PetscVec) -> Result<()> {
-        self.built.0.clear();
+        self.preconditioner.active.clear();
         self.u.copy_from(u)
     }
 
@@ -182,7 +195,8 @@ impl<'a> Equations<'a> {
         let (rows, reduced) = (self.rows, self.reduced);
         let active = &mut state.active;
         let groups = ActiveGroups::new(rows, active, &state.priority);
-        let (before, springs) = &self.built;
+        let last = &mut self.preconditioner;
+        let (before, springs) = (&last.active, &last.exerted);
         let changed = active.iter().zip(before).filter(|(a, b)| a != b).count()
             + state.exerted.rows_changed(springs, STIFFER);
         let stale = changed as f64 > self.tolerances.lag * rows.len() as f64;
@@ -190,21 +204,21 @@ impl<'a> Equations<'a> {
         let other = self.tolerances.inner == 0.0 && !state.exerted.is_as_stiff(springs);
         let build = before.is_empty() || stale || other;
         if build {
-            self.built = (active.clone(), state.exerted.clone());
+            (last.active, last.exerted) = (active.clone(), state.exerted.clone());
         }
         let entries = state.exerted.entries(rows, &groups);
         let prepare = || {
-            if build && self.begun {
-                self.ksp = Some((self.solvers)()?);
+            if build && last.is_built {
+                last.ksp = Some((self.solvers)()?);
             }
-            let ksp = self.ksp.as_ref().expect("the loop has begun");
+            let ksp = last.ksp.as_ref().expect("the loop has begun");
             ksp.set_reuse_preconditioner(!build)?;
             reduced.update(&groups, &entries)?;
             ksp.set_operators(&reduced.a, &reduced.a)?;
             ksp.setup()
         };
         self.setup += timed(self.session, prepare)?.1;
-        self.begun = true;
+        self.preconditioner.is_built = true;
         Ok(groups)
     }
 
@@ -216,7 +230,8 @@ impl<'a> Equations<'a> {
         let groups = self.prepared(state)?;
         let (rows, reduced, comm) = (self.rows, self.reduced, self.session.comm());
         let (u, active) = (&self.u, &state.active);
-        let ksp = self.ksp.as_ref().expect("the loop has begun");
+        let ksp = self.preconditioner.ksp.as_ref();
+        let ksp = ksp.expect("the loop has begun");
         let exerted = |w: &[f64]| state.exerted.forces(rows, w);
         let b = reduced.rhs(&groups, &exerted(&groups.offset))?;
         let v = reduced.start(&groups, u)?;
@@ -317,7 +332,9 @@ impl<'a> Equations<'a> {
         u.copy_from(&self.u)?;
         Ok(ActiveSetEnd {
             u,
+            held: solved.active.clone(),
             active: solved.active,
+            preconditioner: self.preconditioner.clone(),
             lambda: solved.judged.lambda,
             gaps: solved.judged.gaps,
             steps: steps.iter().map(|step| step.systems).sum(),

@@ -17,6 +17,7 @@ mod friction;
 pub mod groups;
 mod judged;
 pub mod layout;
+pub mod load_steps;
 pub mod motions;
 pub mod near;
 pub mod outer;

@@ -10,7 +10,9 @@
 
 use std::cell::RefCell;
 
-use super::course::{ActiveSetEnd, AssembledCourse, OuterSolve, SetState, Solvers, Tolerances};
+use super::course::{
+    ActiveSetEnd, AssembledCourse, OuterSolve, OuterStart, SetState, Solvers, Tolerances,
+};
 use super::equations::Equations;
 use super::friction::StickAndSlip;
 use super::reduced::Reduced;
@@ -28,7 +30,7 @@ struct AssembledRows<'a> {
     reduced: &'a Reduced,
     /// The solver of one set. Only the strategy that runs has it.
     equations: RefCell<Equations<'a>>,
-    given: Option<&'a [bool]>,
+    start: OuterStart<'a>,
 }
 
 impl InnerProblem for AssembledRows<'_> {
@@ -41,15 +43,24 @@ impl InnerProblem for AssembledRows<'_> {
                 Box::new(Trials::new(search, &self.equations, state)?)
             }
             Begin::First(_) | Begin::Again(_) => {
-                self.equations.borrow_mut().start()?;
+                let mut equations = self.equations.borrow_mut();
+                match self.start {
+                    OuterStart::After(end) => equations.go_on(end)?,
+                    OuterStart::Cold | OuterStart::Given(_) => equations.start()?,
+                }
+                drop(equations);
+                let (active, lambda) = match self.start {
+                    OuterStart::Cold => (self.rows.initial.clone(), Vec::new()),
+                    OuterStart::Given(set) => (set.to_vec(), Vec::new()),
+                    OuterStart::After(end) => (end.held.clone(), end.lambda.clone()),
+                };
                 let state = SetState {
-                    active: self
-                        .given
-                        .map_or_else(|| self.rows.initial.clone(), <[bool]>::to_vec),
+                    active,
                     priority: (0..self.rows.len()).collect(),
+                    lambda,
                     ..SetState::default()
                 };
-                let is_given = self.given.is_some();
+                let is_given = matches!(self.start, OuterStart::Given(_));
                 if self.rows.has_laws() && !is_given {
                     let inner = (self.rows, self.reduced);
                     return Ok(Box::new(StickAndSlip::new(inner, &self.equations, state)));
@@ -65,7 +76,7 @@ impl InnerProblem for AssembledRows<'_> {
     }
 }
 
-/// Runs the loop. Where a set is given, only its equations are solved. Collective.
+/// Runs the loop. Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -76,7 +87,7 @@ pub fn solve(
     solvers: &mut Solvers,
     tolerances: Tolerances,
     solve: OuterSolve,
-    given: Option<&[bool]>,
+    start: OuterStart,
 ) -> Result<ActiveSetEnd> {
     let equations = Equations::new(session, (rows, reduced), solvers, tolerances, solve)?;
     let problem = AssembledRows {
@@ -84,7 +95,7 @@ pub fn solve(
         rows,
         reduced,
         equations: RefCell::new(equations),
-        given,
+        start,
     };
     Ok(driver::solve(&problem, None, &mut |_, _| Ok(()))?.0)
 }

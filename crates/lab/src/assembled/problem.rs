@@ -1,6 +1,6 @@
 //! K, f and the inequalities of a scene, and how far vectors are from satisfying them.
 
-use super::groups::ActiveGroups;
+use super::groups::{multipliers, ActiveGroups, MultiplierSigns};
 use super::rows::Inequalities;
 use super::system::{AssembledSystem, MatrixFormat};
 use super::unknowns::{Trace, Unknowns};
@@ -18,6 +18,28 @@ pub struct AssembledProblem {
     pub rows: Inequalities,
     /// Access to the entries of vectors at the unknowns in rows.
     pub trace: Trace,
+}
+
+/// The rows at a displacement.
+pub struct RowsAt {
+    /// The rows that bear forces, and their groups: see [`AssembledProblem::bearing`].
+    pub bears: Vec<bool>,
+    /// The groups.
+    pub groups: ActiveGroups,
+    /// The multipliers.
+    pub lambda: Vec<f64>,
+    /// B u − c.
+    pub gaps: Vec<f64>,
+}
+
+impl RowsAt {
+    /// B u − C λ − c.
+    pub fn slips(&self, rows: &Inequalities) -> Vec<f64> {
+        let pairs = self.gaps.iter().zip(&self.lambda).enumerate();
+        pairs
+            .map(|(r, (gap, l))| gap - rows.softness(r) * l)
+            .collect()
+    }
 }
 
 impl AssembledProblem {
@@ -76,6 +98,25 @@ impl AssembledProblem {
         (bears, groups)
     }
 
+    /// The rows at a displacement where these are active. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn rows_at(&self, session: &Session, u: &PetscVec, active: &[bool]) -> Result<RowsAt> {
+        let (bears, groups) = self.bearing(active);
+        let comm = session.comm();
+        let gaps = self.rows.gaps(&self.trace.get(comm, u)?);
+        let r = u.duplicate()?;
+        self.system.residual(u, &r)?;
+        let forces = self.trace.get(comm, &r)?;
+        Ok(RowsAt {
+            lambda: multipliers(&self.rows, &bears, &forces, MultiplierSigns::Any),
+            gaps,
+            bears,
+            groups,
+        })
+    }
+
     /// How far these multipliers are from the laws of friction and of soft contact, as a force: the largest
     /// |λ_t − Π_g(λ_t + k w)| of a node, with the projection Π_g onto the disc of radius g, and the largest
     /// |λ_n − (B u − c)/C| of a soft row. `diagonal` is that of K at the unknowns in rows. Rows in `unclear` do not
@@ -89,7 +130,7 @@ impl AssembledProblem {
     ) -> f64 {
         let rows = &self.rows;
         let each = || (0..rows.len()).map(|r| (r, rows.scale_of(r)));
-        let force: Vec<f64> = each().map(|(r, s)| lambda[r] / s).collect();
+        let force = rows.of_scene(lambda);
         let give: Vec<f64> = each()
             .map(|(r, s)| s * rows.softness(r) * lambda[r])
             .collect();

@@ -111,16 +111,9 @@ impl Reduced {
         self.f.duplicate()
     }
 
-    /// Replaces the load. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn set_load(&mut self, f: PetscVec) -> Result<()> {
-        if self.reference > 0.0 {
-            self.reference = f.norm2()?;
-        }
-        self.f = f;
-        Ok(())
+    /// Replaces the load, and the norm that residuals are relative to.
+    pub fn set_load(&mut self, f: &PetscVec, reference: f64) {
+        (self.f, self.reference) = (f.clone(), reference);
     }
 
     fn comm(&self) -> &SimpleCommunicator {

@@ -3,8 +3,9 @@
 //! MUMPS factors the assembled matrix; with inequalities, an active-set loop surrounds it. Every solution is refined,
 //! by default with residuals in twice the working precision. It runs on any number of ranks.
 
-use super::course::{ActiveSetEnd, OuterSolve, Tolerances};
+use super::course::{ActiveSetEnd, OuterSolve, OuterStart, Tolerances};
 use super::layout::UnknownLayout;
+use super::load_steps::LoadSteps;
 use super::near::{Near, NearKernel};
 use super::problem::AssembledProblem;
 use super::reduced::Reduced;
@@ -39,14 +40,18 @@ pub enum ResidualPrecision {
     Twice,
 }
 
-/// The direct solution of a scene at its last load step.
+/// The direct solution of a scene at its last load step, with friction from the steps before it.
 pub struct Reference<'a> {
     session: Session,
     layout: &'a UnknownLayout<'a>,
     /// The assembled problem.
     pub problem: AssembledProblem,
-    /// Its solution.
+    /// Its solution, or that of the first load step without one.
     pub found: ActiveSetEnd,
+    /// The load steps, and the solutions of those before the last one.
+    pub steps: LoadSteps,
+    /// The solutions of the steps before.
+    pub before: Vec<ActiveSetEnd>,
 }
 
 impl<'a> Reference<'a> {
@@ -72,7 +77,10 @@ impl<'a> Reference<'a> {
             ));
         }
         let unknowns = Unknowns::all(layout);
-        let problem = AssembledProblem::new(session, scene, &unknowns, MatrixFormat::Assembled)?;
+        let format = MatrixFormat::Assembled;
+        let mut problem = AssembledProblem::new(session, scene, &unknowns, format)?;
+        let assembled = (&problem.system, &problem.rows);
+        let steps = LoadSteps::new(session, scene, assembled, format)?;
         let refiner;
         let solve = match precision {
             ResidualPrecision::Working => OuterSolve::Repeated(SOLVES),
@@ -82,7 +90,7 @@ impl<'a> Reference<'a> {
             }
         };
         let kernel = NearKernel::new(scene, &unknowns, &problem.system.b, Near::None)?;
-        let reduced = Reduced::new(session, &problem.system, &problem.rows, kernel)?;
+        let mut reduced = Reduced::new(session, &problem.system, &problem.rows, kernel)?;
         let ksp = mumps(session)?;
         let tolerances = Tolerances {
             rtol: TARGET,
@@ -90,23 +98,25 @@ impl<'a> Reference<'a> {
             lag: 0.0,
         };
         let mut solver = || Ok(ksp.clone());
-        let rows = &problem.rows;
         // Without inequalities there is one set only, the empty one.
-        let given = given.or((rows.len() == 0).then_some(&[]));
-        let found = outer::solve(
-            session,
-            rows,
-            &reduced,
-            &mut solver,
-            tolerances,
-            solve,
-            given,
-        )?;
+        let given = given.or((problem.rows.len() == 0).then_some(&[]));
+        let system = &problem.system;
+        let mut before = steps.follow(&mut problem.rows, |step, rows, start| {
+            // Residuals in twice the precision are those of the assembled system.
+            system.b.copy_from(&step.b)?;
+            reduced.set_load(&step.b, step.reference);
+            let start = given.map_or(start, OuterStart::Given);
+            let solver = &mut solver;
+            outer::solve(session, rows, &reduced, solver, tolerances, solve, start)
+        })?;
+        let found = before.pop().expect("there is a load step");
         let mut out = Reference {
             session: session.clone(),
             layout,
             problem,
             found,
+            steps,
+            before,
         };
         if layout.loose() > 0 && out.found.converged && out.pushed(scene)? > BALANCED {
             out.found.converged = false;

@@ -166,6 +166,12 @@ impl Inequalities {
         self.scale.get(r).copied().unwrap_or(1.0)
     }
 
+    /// Multipliers in units of the scene.
+    pub fn of_scene(&self, lambda: &[f64]) -> Vec<f64> {
+        let each = lambda.iter().enumerate();
+        each.map(|(r, l)| l / self.scale_of(r)).collect()
+    }
+
     /// The compliance of the nodes of each row, in units of the scene, from the diagonal of K at the unknowns.
     pub fn give(&self, diagonal: &[f64]) -> Vec<f64> {
         let at = |end: usize| diagonal.get(end).map_or(0.0, |k| 1.0 / k);

@@ -54,28 +54,12 @@ impl AssembledSystem {
         unknowns: &Unknowns,
         format: MatrixFormat,
     ) -> Result<AssembledSystem> {
-        let (ranks, rank) = (session.size(), session.rank());
-        let share = contiguous_share(scene.n_subdomains(), ranks, rank);
-        let mine: Result<Vec<Subdomain>> = share.clone().map(|s| scene.subdomain(s)).collect();
-        let mine = session.agree(mine)?;
+        let mine = subdomains(session, scene)?;
         let part = MergedSubdomain::new(session, &mine, unknowns)?;
-        let owned = match format {
-            MatrixFormat::Assembled => unknowns.share(ranks, rank),
-            MatrixFormat::Unassembled => unknowns.range(share),
-        };
-        let b = PetscVec::mpi(session, owned.len())?;
-        Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
-        let all = unknowns.are_all() && !unknowns.layout.has_dependent();
-        let mut reference = if all {
-            b.norm2()?
-        } else {
-            norm_f(session, &mine, unknowns.layout)?
-        };
-        if reference == 0.0 {
-            reference = b.norm2()?;
-        }
+        let (b, reference) = part.load(session, &mine, unknowns, format)?;
         drop(mine);
-        let unassembled = Mat::unassembled(session, owned.len(), &part.unknowns, &part.k)?;
+        let n = b.ownership_range().len();
+        let unassembled = Mat::unassembled(session, n, &part.unknowns, &part.k)?;
         let fields = part.fields;
         let a = match format {
             MatrixFormat::Assembled => unassembled.convert("aij")?,
@@ -93,6 +77,15 @@ impl AssembledSystem {
             reference,
             fields,
         })
+    }
+
+    /// Replaces the load, and the norm that residuals are relative to. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn set_load(&mut self, b: &PetscVec, reference: f64) -> Result<()> {
+        self.reference = reference;
+        self.b.copy_from(b)
     }
 
     /// r ← b − A u.
@@ -165,6 +158,28 @@ impl AssembledSystem {
     }
 }
 
+/// This rank's contiguous share of the subdomains.
+fn subdomains(session: &Session, scene: &Scene) -> Result<Vec<Subdomain>> {
+    let share = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
+    session.agree(share.map(|s| scene.subdomain(s)).collect())
+}
+
+/// The load of a scene on the unknowns, and the norm that residuals are relative to: as in an [`AssembledSystem`] of
+/// this format, without its matrix. Collective.
+///
+/// # Errors
+/// As [`Scene::subdomain`], and PETSc's.
+pub fn load(
+    session: &Session,
+    scene: &Scene,
+    unknowns: &Unknowns,
+    format: MatrixFormat,
+) -> Result<(PetscVec, f64)> {
+    let mine = subdomains(session, scene)?;
+    let part = MergedSubdomain::new(session, &mine, unknowns)?;
+    part.load(session, &mine, unknowns, format)
+}
+
 /// The place in the layout of every dof of the subdomains.
 fn places(subdomains: &[Subdomain], layout: &UnknownLayout) -> Vec<i32> {
     let dofs = subdomains.iter().flat_map(|s| &s.dofs);
@@ -195,6 +210,34 @@ struct MergedSubdomain {
 type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
 
 impl MergedSubdomain {
+    /// The load of all ranks, and the norm that residuals are relative to; `mine` are the subdomains of this one.
+    /// Collective.
+    fn load(
+        &self,
+        session: &Session,
+        mine: &[Subdomain],
+        unknowns: &Unknowns,
+        format: MatrixFormat,
+    ) -> Result<(PetscVec, f64)> {
+        let (ranks, rank) = (session.size(), session.rank());
+        let all = unknowns.layout.scene().n_subdomains();
+        let owned = match format {
+            MatrixFormat::Assembled => unknowns.share(ranks, rank),
+            MatrixFormat::Unassembled => unknowns.range(contiguous_share(all, ranks, rank)),
+        };
+        let b = PetscVec::mpi(session, owned.len())?;
+        Scatter::new(&b, &self.unknowns, &self.f)?.reverse_add(&self.f, &b)?;
+        let plain = unknowns.are_all() && !unknowns.layout.has_dependent();
+        let mut reference = match plain {
+            true => b.norm2()?,
+            false => norm_f(session, mine, unknowns.layout)?,
+        };
+        if reference == 0.0 {
+            reference = b.norm2()?;
+        }
+        Ok((b, reference))
+    }
+
     fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<MergedSubdomain> {
         let mut unknowns: Vec<i32> = Vec::new();
         for &dof in subdomains.iter().flat_map(|s| &s.dofs) {

@@ -1,14 +1,15 @@
 //! One solve, and its repetition with smaller tolerances until a given residual of the assembled problem is met.
 
-use super::task::Outcome;
+use super::task::{step_file, ContactOutcome, Outcome, StepOutcome};
 use base::Result;
 use petsc::Vec as PetscVec;
+use std::path::Path;
 
 /// One solve to a tolerance of the method's own residual.
 pub struct Attempt {
-    /// The solution, in the order of the assembled problem.
-    pub u: PetscVec,
-    /// ‖b − A u‖₂ / ‖f‖₂ of the assembled problem.
+    /// The solutions of the load steps, in the order of the assembled problem.
+    pub u: Vec<PetscVec>,
+    /// ‖b − A u‖₂ / ‖f‖₂ of the assembled problem, the largest of all load steps.
     pub residual: f64,
     /// Whether the method's own tolerance was reached.
     pub converged: bool,
@@ -17,6 +18,15 @@ pub struct Attempt {
 }
 
 impl Attempt {
+    /// Writes the solutions to files, the first one to `file`. Collective.
+    ///
+    /// # Errors
+    /// Those of the disk.
+    pub fn save(&self, file: &Path) -> Result<()> {
+        let mut each = self.u.iter().enumerate();
+        each.try_for_each(|(step, u)| u.save(&step_file(file, step)))
+    }
+
     /// The method's report, if this solve is the one that counts: with its own tolerance, a message if the target was
     /// missed, the seconds of assembly and set-up, and the memory.
     pub(super) fn report(
@@ -35,6 +45,51 @@ impl Attempt {
             ..self.outcome
         }
     }
+}
+
+/// The sums of the load steps of a method, and the largest residual. `n` load steps were to be solved.
+pub fn together(steps: Vec<StepOutcome>, n: usize) -> (Outcome, f64) {
+    let last = steps.last().map(|step| step.contact.clone());
+    let outer: Option<usize> = steps.iter().map(|step| step.contact.steps).sum();
+    let outcome = Outcome {
+        iterations: steps.iter().map(|step| step.iterations).sum(),
+        setup: steps.iter().map(|step| step.setup).sum(),
+        solve: steps.iter().map(|step| step.solve).sum(),
+        contact: last.map(|last| ContactOutcome {
+            steps: outer,
+            ..last
+        }),
+        ..Outcome::default()
+    };
+    let residual = steps
+        .iter()
+        .fold(0.0f64, |most, step| most.max(step.residual));
+    let load_steps = if n > 1 { steps } else { Vec::new() };
+    (
+        Outcome {
+            load_steps,
+            ..outcome
+        },
+        residual,
+    )
+}
+
+/// The sentence on a solve without a solution.
+fn unsolved(outcome: &Outcome) -> String {
+    let why = match outcome.reason.as_str() {
+        "DIVERGED_CONTACT_ITS" => "the states of its contacts did not settle",
+        "DIVERGED_CONTACT_LOOSE" => "a row that holds a body pulls",
+        "DIVERGED_CONTACT_SLIDES" => "a body slides away",
+        _ => return format!("did not converge: {}", outcome.reason),
+    };
+    let last = outcome.load_steps.last().map(|step| &step.contact);
+    let steps = last.or(outcome.contact.as_ref()).and_then(|c| c.steps);
+    let place = match outcome.load_steps.len() {
+        0 => String::new(),
+        n => format!(" in load step {n}"),
+    };
+    let (steps, reason) = (steps.unwrap_or(0), &outcome.reason);
+    format!("did not converge{place}: {why} in {steps} steps of the loop ({reason})")
 }
 
 /// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers
@@ -61,7 +116,7 @@ pub fn solve_to(
             return Ok((now, rtol, None));
         }
         if !now.converged && best.is_none() {
-            let message = format!("did not converge: {}", now.outcome.reason);
+            let message = unsolved(&now.outcome);
             return Ok((now, rtol, Some(message)));
         }
         // Stuck: further iterations gain nothing, or none are left.

@@ -114,9 +114,7 @@ fn run(session: &Session, wanted: &Comparison, scene: &Scene, plan: &BaselinePla
     }
     progress("direct solution");
     let verdict = methods.judge(solutions)?;
-    for (k, judgement) in solved.into_iter().zip(&verdict.solutions) {
-        sentence(&mut rows[k].run, judgement);
-    }
+    sentence(&mut rows, |row| &mut row.run, solved, &verdict);
     destination.progress("");
     let mut report = CompareReport {
         facts: facts(scene, plan),
@@ -127,7 +125,12 @@ fn run(session: &Session, wanted: &Comparison, scene: &Scene, plan: &BaselinePla
     judged(&mut report.facts, scene, &verdict);
     destination.finish("compare", &compare::text(&report), &report, |dir| {
         compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
-        Ok(vec!["compare.csv".into()])
+        let mut written = vec!["compare.csv".into()];
+        if let Some(steps) = compare::steps_csv(&report.rows) {
+            steps.write_csv(&dir.join("compare_steps.csv"))?;
+            written.push("compare_steps.csv".into());
+        }
+        Ok(written)
     })?;
     let rows = report.rows.iter();
     stopped(rows.map(|r| (&r.run, wanted.scene.display().to_string())))

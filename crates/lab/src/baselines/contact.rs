@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use super::attempt::{solve_to, Attempt};
+use super::attempt::{solve_to, together, Attempt};
 use super::linear::{kappa, solver};
 use super::second::SecondLoad;
 use super::table::Baseline;
-use super::task::{ContactOutcome, Job, Outcome};
-use crate::assembled::course::{OuterSolve, Tolerances};
+use super::task::{ContactOutcome, Job, Outcome, StepOutcome};
+use crate::assembled::course::{OuterSolve, OuterStart, Tolerances};
 use crate::assembled::layout::UnknownLayout;
+use crate::assembled::load_steps::LoadSteps;
 use crate::assembled::near::NearKernel;
 use crate::assembled::outer;
 use crate::assembled::reduced::Reduced;
@@ -20,7 +21,7 @@ use parallel::meter::{memory, timed};
 use petsc::Session;
 use scene::Scene;
 
-/// Solves a scene with inequalities.
+/// Solves a scene with inequalities, with friction all its load steps.
 ///
 /// # Errors
 /// Those of the scene, PETSc's, and those of the disk.
@@ -31,19 +32,21 @@ pub fn baseline(
     row: &Baseline,
     file: &Path,
 ) -> Result<Outcome> {
-    let ((rows, mut reduced, load), assemble) = timed(session, || {
+    let ((mut rows, mut reduced, load, steps), assemble) = timed(session, || {
         let layout = UnknownLayout::new(scene);
         let rows = Inequalities::new(scene, &layout);
         let unknowns = Unknowns::all(&layout);
         let system = AssembledSystem::new(session, scene, &unknowns, row.format)?;
         let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
-        let load = if job.again {
+        let steps = LoadSteps::new(session, scene, (&system, &rows), row.format)?;
+        // A load step that depends on others has no second load.
+        let load = if job.again && steps.0.len() == 1 {
             Some(SecondLoad::new(&layout).of(&unknowns, &system.b)?)
         } else {
             None
         };
         let reduced = Reduced::new(session, &system, &rows, kernel)?;
-        Ok((rows, reduced, load))
+        Ok((rows, reduced, load, steps))
     })?;
     let (ksp, mut krylov) = solver(session, row, &reduced.a)?;
     let mut last = ksp;
@@ -54,7 +57,7 @@ pub fn baseline(
         false => krylov.tolerances()?.0,
     };
     // The loop's result separates the seconds of set-ups from the rest.
-    let mut find = |reduced: &Reduced, rtol: f64| {
+    let mut find = |rows: &Inequalities, reduced: &Reduced, rtol: f64, start: OuterStart| {
         let tolerances = Tolerances {
             rtol,
             inner: if direct { 0.0 } else { job.inner },
@@ -69,41 +72,52 @@ pub fn baseline(
         };
         let found = outer::solve(
             session,
-            &rows,
+            rows,
             reduced,
             &mut solvers,
             tolerances,
             OuterSolve::Once,
-            None,
+            start,
         )?;
         Ok((found, kappa(&krylov)?))
     };
     let (attempt, rtol, message) = solve_to(job.rtol, first, |rtol| {
-        let (found, kappa) = find(&reduced, rtol)?;
-        Ok(Attempt {
+        let mut last = None;
+        let ends = steps.follow(&mut rows, |step, rows, start| {
+            reduced.set_load(&step.b, step.reference);
+            let (found, kappa) = find(rows, &reduced, rtol, start)?;
+            last = kappa.or(last);
+            Ok(found)
+        })?;
+        let outcomes = ends.iter().map(|found| StepOutcome {
+            iterations: (!direct).then_some(found.iterations),
+            setup: found.setup,
+            solve: found.solve,
             residual: found.residual,
-            converged: found.converged,
-            outcome: Outcome {
-                kappa,
-                iterations: (!direct).then_some(found.iterations),
-                setup: found.setup,
-                solve: found.solve,
-                contact: Some(ContactOutcome {
-                    steps: Some(found.steps),
-                    active: rows.list(&found.active),
-                }),
-                reason: found.reason,
-                ..Outcome::default()
+            contact: ContactOutcome {
+                steps: Some(found.steps),
+                active: rows.list(&found.active),
             },
-            u: found.u,
+        });
+        let (outcome, residual) = together(outcomes.collect(), steps.0.len());
+        let end = ends.last().expect("there is a load step");
+        Ok(Attempt {
+            residual,
+            converged: end.converged,
+            outcome: Outcome {
+                kappa: last,
+                reason: end.reason.clone(),
+                ..outcome
+            },
+            u: ends.into_iter().map(|end| end.u).collect(),
         })
     })?;
     let memory = memory(session);
-    attempt.u.save(file)?;
+    attempt.save(file)?;
     let again = match load {
         Some(load) if message.is_none() => {
-            reduced.set_load(load)?;
-            let (found, _) = find(&reduced, rtol)?;
+            reduced.set_load(&load, load.norm2()?);
+            let (found, _) = find(&rows, &reduced, rtol, OuterStart::Cold)?;
             Some(found.setup + found.solve)
         }
         _ => None,

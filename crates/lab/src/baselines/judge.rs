@@ -1,15 +1,17 @@
 //! The judge: a direct solution, the distance of every method's solution from it, and the residuals of the optimality
 //! conditions.
 
-use std::path::PathBuf;
-
 use serde::{Deserialize, Serialize};
 
-use crate::assembled::groups::{multipliers, unclear, MultiplierSigns};
+use super::task::StepFile;
+use crate::assembled::course::ActiveSetEnd;
+use crate::assembled::groups::unclear;
 use crate::assembled::layout::UnknownLayout;
-use crate::assembled::problem::AssembledProblem;
+use crate::assembled::load_steps::{LoadStep, Slid};
+use crate::assembled::problem::{AssembledProblem, RowsAt};
 use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::refine::over;
+use crate::assembled::strain::energy_norm;
 use base::Result;
 use petsc::{Session, Vec as PetscVec};
 use scene::Scene;
@@ -34,6 +36,9 @@ pub struct CaseJudgement {
     pub rows: usize,
     /// The judgement of every solution.
     pub solutions: Vec<Judgement>,
+    /// Where several load steps are solved, the judgement of every solution at each of them.
+    #[serde(default)]
+    pub load_steps: Vec<Vec<Judgement>>,
 }
 
 /// The judgement of one solution.
@@ -55,63 +60,102 @@ pub struct Judgement {
     /// With friction or soft contact: the largest difference of a multiplier from that of the direct solution, relative
     /// to the largest one there.
     pub forces: Option<f64>,
+    /// Where several load steps are solved: the distance from our solution in the energy norm, relative to that.
+    pub from_ours: Option<f64>,
 }
 
-/// Judges the solutions in these files, each with its active rows. Collective.
+impl Judgement {
+    /// The judgement of all load steps together: the worst of each, and all rows that differ.
+    fn of_all(steps: &[Judgement]) -> Judgement {
+        let worst = |of: fn(&Judgement) -> Option<f64>| -> Option<f64> {
+            let mut values = steps.iter().map(of);
+            values.try_fold(0.0f64, |a, v| Some(a.max(v?)))
+        };
+        let mut least = steps.iter().map(|s| s.min_multiplier);
+        Judgement {
+            error: worst(|s| s.error),
+            residual: worst(|s| s.residual),
+            feasibility: worst(|s| s.feasibility),
+            min_multiplier: least.try_fold(0.0f64, |a, v| Some(a.min(v?))),
+            differ: steps.iter().map(|s| s.differ).sum(),
+            law: worst(|s| s.law),
+            forces: worst(|s| s.forces),
+            from_ours: worst(|s| s.from_ours),
+        }
+    }
+}
+
+/// Judges solutions: each is a list of load steps, by their files and active rows. Collective.
 ///
 /// # Errors
 /// Those of the scene, PETSc's, and those of the disk.
 pub fn judge(
     session: &Session,
     scene: &Scene,
-    solutions: &[(PathBuf, Vec<usize>)],
+    solutions: &[Vec<StepFile>],
 ) -> Result<CaseJudgement> {
     let layout = UnknownLayout::new(scene);
     let reference = Reference::new(session, scene, &layout, ResidualPrecision::Twice, None)?;
-    let (problem, found) = (&reference.problem, &reference.found);
-    let court = ReferenceComparison {
-        session,
+    let Reference {
         problem,
-        diagonal: if problem.rows.has_laws() {
-            diagonal(session, problem)?
-        } else {
-            Vec::new()
-        },
+        found,
+        steps,
+        before,
+        ..
+    } = reference;
+    let diagonal = match problem.rows.has_laws() {
+        true => diagonal(session, &problem)?,
+        false => Vec::new(),
     };
-    let (mut first, holds, forces) = court.judge(&found.u, found.active.clone(), None)?;
-    first.error = Some(0.0);
-    let u_max = found.u.norm_inf()?;
-    let lambda_max = found.lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
-    let idle = |r: usize| {
-        let (l, gap) = (found.lambda[r].abs(), found.gaps[r].abs());
-        l <= IDLE * lambda_max && gap <= IDLE * u_max
+    let mut court = ReferenceComparison {
+        session,
+        layout: &layout,
+        problem,
+        diagonal,
     };
-    let counts: Vec<bool> = (0..problem.rows.len()).map(|r| !idle(r)).collect();
+    let direct: Vec<&ActiveSetEnd> = before.iter().chain([&found]).collect();
+    let mut slid = vec![Slid::default(); solutions.len() + 1];
+    let mut own = Vec::new();
     let mut verdict = CaseJudgement {
-        reference: found.converged.then_some(first),
-        steps: scene.has_contact().then_some(found.steps),
-        active: holds.iter().filter(|on| **on).count(),
-        rows: problem.rows.len(),
-        solutions: Vec::new(),
+        steps: (scene.has_contact()).then(|| direct.iter().map(|end| end.steps).sum()),
+        rows: court.problem.rows.len(),
+        load_steps: vec![Vec::new(); solutions.len()],
+        ..CaseJudgement::default()
     };
-    let size = reference.energy_norm(&found.u)?;
-    let d = found.u.duplicate()?;
-    let known = DirectRows {
-        holds: &holds,
-        counts: &counts,
-        forces: &forces,
-    };
-    for (file, active) in solutions {
-        d.load(file)?;
-        let active = problem.rows.set(active);
-        let (mut one, ..) = court.judge(&d, active, Some(&known))?;
-        d.axpy(-1.0, &found.u)?;
-        let distance = reference.energy_norm(&d)?;
-        one.error = found.converged.then_some(over(distance, size));
-        if !found.converged {
-            (one.differ, one.forces) = (None, None);
+    for (k, step) in steps.0.iter().enumerate() {
+        let mut known = None;
+        if let Some(end) = direct.get(k) {
+            let mut judged = court.judge(step, &end.u, end.active.clone(), (&mut slid[0], None))?;
+            judged.0.error = Some(0.0);
+            verdict.active = judged.1.iter().filter(|on| **on).count();
+            own.push(judged.0);
+            known = end
+                .converged
+                .then(|| court.direct(end, judged))
+                .transpose()?;
         }
-        verdict.solutions.push(one);
+        let mut ours = None;
+        for (i, files) in solutions.iter().enumerate() {
+            let Some((file, active)) = files.get(k) else {
+                continue;
+            };
+            let u = court.problem.system.b.duplicate()?;
+            u.load(file)?;
+            let active = court.problem.rows.set(active);
+            let at = (&mut slid[i + 1], known.as_ref());
+            let (mut one, ..) = court.judge(step, &u, active, at)?;
+            if steps.0.len() > 1 {
+                one.from_ours = Some(court.distance(&u, ours.as_ref().unwrap_or(&u))?);
+            }
+            verdict.load_steps[i].push(one);
+            ours.get_or_insert(u);
+        }
+    }
+    verdict.reference = found.converged.then(|| Judgement::of_all(&own));
+    let all = verdict.load_steps.iter();
+    verdict.solutions = all.map(|list| Judgement::of_all(list)).collect();
+    if steps.0.len() == 1 {
+        verdict.load_steps.clear();
     }
     Ok(verdict)
 }
@@ -126,54 +170,87 @@ fn diagonal(session: &Session, problem: &AssembledProblem) -> Result<Vec<f64>> {
 /// The data that solutions are compared with.
 struct ReferenceComparison<'a> {
     session: &'a Session,
-    problem: &'a AssembledProblem,
+    layout: &'a UnknownLayout<'a>,
+    problem: AssembledProblem,
     /// The diagonal of K at the unknowns in rows; empty without friction and soft contact.
     diagonal: Vec<f64>,
 }
 
-/// The rows in the direct solution.
+/// The direct solution of a load step.
 struct DirectRows<'a> {
-    /// Whether each holds.
-    holds: &'a [bool],
+    /// The displacements.
+    u: &'a PetscVec,
+    /// Whether each row holds.
+    holds: Vec<bool>,
     /// Whether it counts.
-    counts: &'a [bool],
+    counts: Vec<bool>,
     /// Its multiplier; `None` where it is not the only one.
-    forces: &'a [Option<f64>],
+    forces: Vec<Option<f64>>,
 }
 
 /// A judgement, which rows hold, and their multipliers as in [`DirectRows`].
 type Judged = (Judgement, Vec<bool>, Vec<Option<f64>>);
 
 impl ReferenceComparison<'_> {
-    /// Everything but the error. Collective.
+    /// The direct solution of a load step, which has been judged. Collective.
+    fn direct<'e>(&self, end: &'e ActiveSetEnd, judged: Judged) -> Result<DirectRows<'e>> {
+        let (_, holds, forces) = judged;
+        let u_max = end.u.norm_inf()?;
+        let lambda_max = end.lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
+        let idle = |r: usize| {
+            let (l, gap) = (end.lambda[r].abs(), end.gaps[r].abs());
+            l <= IDLE * lambda_max && gap <= IDLE * u_max
+        };
+        Ok(DirectRows {
+            u: &end.u,
+            counts: (0..holds.len()).map(|r| !idle(r)).collect(),
+            holds,
+            forces,
+        })
+    }
+
+    /// The distance of two solutions in the energy norm, relative to the second one. Collective.
+    fn distance(&self, u: &PetscVec, from: &PetscVec) -> Result<f64> {
+        let norm = |w: &PetscVec| energy_norm(self.session, self.layout, &self.problem.system, w);
+        let d = u.duplicate()?;
+        d.copy_from(u)?;
+        d.axpy(-1.0, from)?;
+        Ok(over(norm(&d)?, norm(from)?))
+    }
+
+    /// A solution of a load step, where its own sides have slid so far; they slide on. Collective.
     fn judge(
-        &self,
+        &mut self,
+        step: &LoadStep,
         u: &PetscVec,
         mut active: Vec<bool>,
-        reference: Option<&DirectRows>,
+        (slid, reference): (&mut Slid, Option<&DirectRows>),
     ) -> Result<Judged> {
-        let AssembledProblem {
-            system,
-            rows,
-            trace,
-        } = self.problem;
+        step.pose(&mut self.problem, slid)?;
+        let error = reference
+            .map(|known| self.distance(u, known.u))
+            .transpose()?;
+        let AssembledProblem { system, rows, .. } = &self.problem;
         if rows.len() == 0 {
             let judgement = Judgement {
+                error,
                 residual: Some(system.relative_residual(u)?),
                 ..Judgement::default()
             };
             return Ok((judgement, Vec::new(), Vec::new()));
         }
-        let comm = self.session.comm();
         let mut holds = self.problem.groups(&mut active).holds;
         for (r, holds) in holds.iter_mut().enumerate() {
             *holds |= active[r];
         }
-        let (bears, groups) = self.problem.bearing(&active);
-        let gaps = rows.gaps(&trace.get(comm, u)?);
-        let r = u.duplicate()?;
-        system.residual(u, &r)?;
-        let lambda = multipliers(rows, &bears, &trace.get(comm, &r)?, MultiplierSigns::Any);
+        let at = self.problem.rows_at(self.session, u, &active)?;
+        step.slide(rows, &at.slips(rows), slid);
+        let RowsAt {
+            bears,
+            groups,
+            lambda,
+            gaps,
+        } = at;
         // The folds start at zero: only violated rows and pulling multipliers count.
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let tangential = rows.tangential();
@@ -201,7 +278,7 @@ impl ReferenceComparison<'_> {
                 .law_error(at, &self.diagonal, &unclear, nothing)
         });
         let apart = |known: &DirectRows| {
-            let pairs = forces.iter().zip(known.forces);
+            let pairs = forces.iter().zip(&known.forces);
             let apart = pairs.filter_map(|(a, b)| Some((a.as_ref()? - b.as_ref()?).abs()));
             let size = known
                 .forces
@@ -211,13 +288,14 @@ impl ReferenceComparison<'_> {
             over(apart.fold(0.0, f64::max), size)
         };
         let judgement = Judgement {
-            error: None,
+            error,
             residual: Some(residual),
             feasibility: Some(over(violation, u_max)),
             min_multiplier: Some(over(least, lambda_max)),
             differ,
             law: laws.map(|error| over(error, lambda_max)),
             forces: reference.filter(|_| rows.has_laws()).map(apart),
+            from_ours: None,
         };
         Ok((judgement, holds, forces))
     }

@@ -142,7 +142,7 @@ pub fn baseline(
         let iterations = krylov.iterations()?;
         Ok(Attempt {
             residual: system.relative_residual(&u)?,
-            u,
+            u: vec![u],
             converged: reason.converged(),
             outcome: Outcome {
                 kappa: kappa(&krylov)?,
@@ -159,9 +159,9 @@ pub fn baseline(
     })?;
     let memory = memory(session);
     if unknowns.are_all() {
-        attempt.u.save(file)?
+        attempt.save(file)?
     } else {
-        unknowns.spread(session, &attempt.u)?.save(file)?
+        unknowns.spread(session, &attempt.u[0])?.save(file)?
     }
     let again = if job.again && message.is_none() {
         krylov.set_tolerances(Some(rtol), None, None, None)?;

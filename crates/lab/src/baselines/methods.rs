@@ -7,12 +7,14 @@ use serde::de::DeserializeOwned;
 use super::judge::{CaseJudgement, Judgement};
 use super::launch::{Failure, Finished, Launcher};
 use super::plan::{BaselinePlan, PlannedRun};
-use super::task::{BaselineTask, Job, Outcome};
+use super::task::{step_file, BaselineTask, ContactOutcome, Job, Outcome, StepFile, StepOutcome};
 use crate::assembled::layout::UnknownLayout;
+use crate::assembled::load_steps::LoadSteps;
 use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
 use report::json::{
-    CompareContact, CompareInequalities, CompareRow, ComparedScene, MethodRun, PhaseSeconds,
+    CompareContact, CompareInequalities, CompareRow, CompareStep, ComparedScene, MethodRun,
+    PhaseSeconds,
 };
 use scene::{Numbering, Scene};
 
@@ -32,8 +34,8 @@ pub struct Methods<'a> {
     active: Option<Vec<usize>>,
 }
 
-/// A solution that a method has left: the file, and the rows that are active in it.
-pub type Left = (PathBuf, Vec<usize>);
+/// The solutions that a method has left, by load step.
+pub type Left = Vec<StepFile>;
 
 /// The result of one run of a method.
 pub struct Ran {
@@ -122,7 +124,17 @@ impl<'a> Methods<'a> {
             if contact.is_some_and(|c| c.steps.is_some()) && run.baseline.is_none() {
                 self.active = Some(rows.clone());
             }
-            solution = Some((self.solution(k), rows));
+            let file = self.solution(k);
+            solution = Some(match &outcome.load_steps[..] {
+                [] => vec![(file, rows)],
+                steps => {
+                    let each = steps.iter().enumerate();
+                    let left = |(step, at): (usize, &StepOutcome)| {
+                        (step_file(&file, step), at.contact.active.clone())
+                    };
+                    each.map(left).collect()
+                }
+            });
         }
         Ok(Ran {
             outcome,
@@ -241,11 +253,8 @@ pub fn row(run: &PlannedRun, ran: Ran) -> CompareRow {
                 kappa: o.kappa,
                 iterations: o.iterations,
                 residual: o.residual,
-                contact: o.contact.map(|c| CompareContact {
-                    outer: c.steps,
-                    active: c.active.len(),
-                    ..CompareContact::default()
-                }),
+                contact: o.contact.as_ref().map(contact),
+                load_steps: o.load_steps.iter().map(load_step).collect(),
                 rtol: o.rtol,
                 converged: o.message.is_none(),
                 converged_reason: o.reason,
@@ -255,6 +264,25 @@ pub fn row(run: &PlannedRun, ran: Ran) -> CompareRow {
         }
     }
     row
+}
+
+fn contact(of: &ContactOutcome) -> CompareContact {
+    CompareContact {
+        outer: of.steps,
+        active: of.active.len(),
+        ..CompareContact::default()
+    }
+}
+
+fn load_step(of: &StepOutcome) -> CompareStep {
+    CompareStep {
+        iterations: of.iterations,
+        residual: Some(of.residual),
+        setup: Some(of.setup),
+        solve: Some(of.solve),
+        contact: contact(&of.contact),
+        ..CompareStep::default()
+    }
 }
 
 /// The seconds of a run.
@@ -267,17 +295,38 @@ pub fn seconds(o: &Outcome) -> PhaseSeconds<f64> {
     }
 }
 
-/// Enters a judgement into a row.
-pub fn sentence(run: &mut MethodRun, judgement: &Judgement) {
-    run.error = judgement.error;
-    run.residual = judgement.residual;
-    if let Some(contact) = &mut run.contact {
-        contact.differ = judgement.differ;
-        contact.feasibility = judgement.feasibility;
-        contact.min_multiplier = judgement.min_multiplier;
-        contact.law = judgement.law;
-        contact.forces = judgement.forces;
+/// Enters the judge's findings into the rows of these numbers, whose methods have left a solution.
+pub fn sentence<R>(
+    rows: &mut [R],
+    run_of: fn(&mut R) -> &mut MethodRun,
+    numbers: Vec<usize>,
+    verdict: &CaseJudgement,
+) {
+    let judged = numbers.into_iter().zip(&verdict.solutions).enumerate();
+    for (i, (k, judgement)) in judged {
+        let run = run_of(&mut rows[k]);
+        run.error = judgement.error;
+        run.residual = judgement.residual;
+        run.from_ours = judgement.from_ours;
+        if let Some(contact) = &mut run.contact {
+            enter(contact, judgement);
+        }
+        let steps = verdict.load_steps.get(i).into_iter().flatten();
+        for (step, judgement) in run.load_steps.iter_mut().zip(steps) {
+            step.error = judgement.error;
+            step.residual = judgement.residual;
+            step.from_ours = judgement.from_ours;
+            enter(&mut step.contact, judgement);
+        }
     }
+}
+
+fn enter(contact: &mut CompareContact, judgement: &Judgement) {
+    contact.differ = judgement.differ;
+    contact.feasibility = judgement.feasibility;
+    contact.min_multiplier = judgement.min_multiplier;
+    contact.law = judgement.law;
+    contact.forces = judgement.forces;
 }
 
 /// Facts about the scene, without its direct solution.
@@ -304,6 +353,7 @@ pub fn judged(facts: &mut ComparedScene, scene: &Scene, verdict: &CaseJudgement)
         min_multiplier: reference.and_then(|r| r.min_multiplier),
         law: reference.and_then(|r| r.law),
         load_steps: scene.n_steps(),
+        solved: LoadSteps::number(scene),
     });
 }
 

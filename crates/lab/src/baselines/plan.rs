@@ -90,8 +90,9 @@ pub struct BaselinePlan {
 impl BaselinePlan {
     /// The plan according to the options.
     ///
-    /// # Errors [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose
-    /// contacts or forces of friction follow from load steps before the last one.
+    /// # Errors
+    /// [`ErrorKind::Input`](base::ErrorKind::Input) for a value out of range, and for a scene whose contacts follow
+    /// from load steps before the last one.
     pub fn new(
         session: &Session,
         scene: &Scene,
@@ -103,14 +104,6 @@ impl BaselinePlan {
                 "the scene \"{}\" has `update` in [steps]: its contacts follow from the load steps before, and methods \
                  are compared on one step alone (a scene without `update` was expected)",
                 scene.title
-            )));
-        }
-        if scene.has_friction() && scene.n_steps() > 1 {
-            return Err(Error::input(format!(
-                "the scene \"{}\" has friction and {} load steps: where its sides stick follows from the load steps \
-                 before, and methods are compared on one step alone (a scene without [steps] was expected)",
-                scene.title,
-                scene.n_steps()
             )));
         }
         let ours = Options::new(session, "fetifeti_");

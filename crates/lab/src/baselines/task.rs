@@ -1,7 +1,7 @@
 //! The messages between the processes of a comparison. The parent writes a [`Job`], starts `mpirun -n R fetifeti
 //! baseline JOB` and reads an [`Outcome`] or a [`CaseJudgement`](super::judge::CaseJudgement).
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -45,9 +45,21 @@ pub enum BaselineTask {
     },
     /// Solve directly and compare these solutions with it.
     Judge {
-        /// Solution files of methods, and the rows active in them.
-        solutions: Vec<(PathBuf, Vec<usize>)>,
+        /// For each method the solutions that it has left.
+        solutions: Vec<Vec<StepFile>>,
     },
+}
+
+/// The solution of a load step that a method has left: the file, and the rows that are active in it.
+pub type StepFile = (PathBuf, Vec<usize>);
+
+/// The file for the solution of load step `step`, counted among those that are solved, of a method whose first one is
+/// in `file`.
+pub fn step_file(file: &Path, step: usize) -> PathBuf {
+    match step {
+        0 => file.to_path_buf(),
+        later => file.with_extension(format!("{later}.u")),
+    }
 }
 
 /// A method's report on its run.
@@ -75,12 +87,31 @@ pub struct Outcome {
     pub rtol: Option<f64>,
     /// ‖b − A u‖₂ / ‖f‖₂.
     pub residual: Option<f64>,
-    /// In scenes with inequalities, the result of the contact loop.
+    /// In scenes with inequalities, the result of the contact loop; of several load steps all active sets, and the
+    /// active rows of the last one.
     pub contact: Option<ContactOutcome>,
+    /// Where several load steps are solved, each of them.
+    #[serde(default)]
+    pub load_steps: Vec<StepOutcome>,
     /// PETSc's name for why the iteration ended.
     pub reason: String,
     /// One sentence if the residual was not reached.
     pub message: Option<String>,
+}
+
+/// A method's report on a load step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepOutcome {
+    /// Iterations of all contact steps; `None` for a direct solver.
+    pub iterations: Option<usize>,
+    /// Seconds of matrices and preconditioners.
+    pub setup: f64,
+    /// Seconds of everything else.
+    pub solve: f64,
+    /// ‖b − A u‖₂ / ‖f‖₂.
+    pub residual: f64,
+    /// The result of the contact loop.
+    pub contact: ContactOutcome,
 }
 
 /// The result of the contact loop.

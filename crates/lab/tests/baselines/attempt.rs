@@ -3,6 +3,49 @@
 use super::*;
 use crate::testing::with_session;
 
+#[test]
+fn a_loop_that_does_not_settle_is_said_with_its_load_step() {
+    let step = |steps, active: &[usize]| StepOutcome {
+        iterations: Some(3 * steps),
+        setup: 0.25,
+        solve: 0.5,
+        residual: 1e-9 * steps as f64,
+        contact: ContactOutcome {
+            steps: Some(steps),
+            active: active.to_vec(),
+        },
+    };
+    let (sum, residual) = together(vec![step(5, &[1, 2]), step(200, &[2])], 3);
+    assert_eq!(
+        (sum.iterations, sum.setup, sum.solve),
+        (Some(615), 0.5, 1.0)
+    );
+    assert!((residual - 2e-7).abs() < 1e-20);
+    let contact = sum.contact.clone().expect("the contact loop");
+    assert_eq!((contact.steps, contact.active), (Some(205), vec![2]));
+    let outcome = Outcome {
+        reason: "DIVERGED_CONTACT_ITS".into(),
+        ..sum
+    };
+    assert_eq!(
+        unsolved(&outcome),
+        "did not converge in load step 2: the states of its contacts did not settle in 200 steps of the loop \
+         (DIVERGED_CONTACT_ITS)"
+    );
+    // A scene with one load step has no number of it.
+    let (alone, _) = together(vec![step(8, &[])], 1);
+    let outcome = Outcome {
+        reason: "DIVERGED_CONTACT_SLIDES".into(),
+        ..alone
+    };
+    assert!(outcome.load_steps.is_empty());
+    let said = unsolved(&outcome);
+    assert!(
+        said.starts_with("did not converge: a body slides away in 8 steps"),
+        "{said}"
+    );
+}
+
 /// The end of an attempt, without its vector.
 #[derive(Debug)]
 struct End {
@@ -18,7 +61,7 @@ fn drive(target: f64, factor: f64, floor: f64, breaks_at: f64) -> (End, Option<S
         let (end, _, message) = solve_to(target, target, |rtol| {
             let steps = (-rtol.log10() - 1e-9).ceil();
             Ok(Attempt {
-                u: PetscVec::seq(session, 1)?,
+                u: vec![PetscVec::seq(session, 1)?],
                 residual: (factor * 10_f64.powf(-steps)).max(floor),
                 converged: rtol > breaks_at,
                 outcome: Outcome {

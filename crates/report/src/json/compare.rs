@@ -76,6 +76,13 @@ pub struct MethodRun {
     /// In scenes with inequalities: their state in this method's solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareContact>,
+    /// Where several load steps are solved: the distance from our solution in the energy norm, relative to that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_ours: Option<f64>,
+    /// Where several load steps are solved, each of them; what stands beside them is then their sum, or the worst of
+    /// them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<CompareStep>,
     /// Relative tolerance of the method's own residual in the run that reached `residual`.
     pub rtol: Option<f64>,
     /// Whether the residual was reached; in `bench` in every round. A method that did not reach it is not run again.
@@ -102,6 +109,26 @@ impl MethodRun {
     }
 }
 
+/// A load step of a method.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompareStep {
+    /// Iterations of all contact steps; `null` for a direct solver.
+    pub iterations: Option<usize>,
+    /// Seconds of set-up within the step.
+    pub setup: Option<f64>,
+    /// Seconds of everything else.
+    pub solve: Option<f64>,
+    /// Relative error in the energy norm against the assembled direct solution.
+    pub error: Option<f64>,
+    /// The relative residual of the assembled problem.
+    pub residual: Option<f64>,
+    /// The distance from our solution in the energy norm, relative to that.
+    pub from_ours: Option<f64>,
+    /// The state of the inequalities.
+    #[serde(flatten)]
+    pub contact: CompareContact,
+}
+
 /// The inequalities in the direct solution of `compare`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareInequalities {
@@ -118,8 +145,11 @@ pub struct CompareInequalities {
     /// With friction or soft contact: the largest distance of a force from its law, relative to the largest multiplier.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<f64>,
-    /// Number of load steps of the scene; only the last one is solved.
+    /// Number of load steps of the scene.
     pub load_steps: usize,
+    /// Number of load steps that are solved: with friction all, else the last one.
+    #[serde(default)]
+    pub solved: usize,
 }
 
 /// The state of the inequalities in one row of `compare`.

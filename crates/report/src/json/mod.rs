@@ -16,8 +16,8 @@ mod spectrum;
 
 pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spread};
 pub use compare::{
-    CompareContact, CompareInequalities, CompareReport, CompareRow, ComparedScene, MethodRun,
-    PhaseSeconds,
+    CompareContact, CompareInequalities, CompareReport, CompareRow, CompareStep, ComparedScene,
+    MethodRun, PhaseSeconds,
 };
 pub use plan::{PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 pub use solve::{

@@ -3,7 +3,7 @@
 use super::methods::{outcome, outer, ranks_and_threads};
 use super::summary::ranks;
 use super::table::{count, fixed, scientific, Table};
-use crate::json::{CompareInequalities, CompareReport, CompareRow};
+use crate::json::{CompareInequalities, CompareReport, CompareRow, CompareStep};
 
 /// The comparison for terminals, with a caption.
 pub fn text(report: &CompareReport) -> String {
@@ -16,11 +16,8 @@ pub fn text(report: &CompareReport) -> String {
         notes += &format!("{} on {}: {text}\n", r.run.method, ranks(r.run.ranks));
     };
     let net = |r: &CompareRow| Some(r.memory_mb? - r.memory_at_start_mb?);
-    let set = |r: &CompareRow| match r.run.contact.and_then(|c| c.differ) {
-        None => "–".to_string(),
-        Some(0) => "same".to_string(),
-        Some(n) => format!("{n} differ"),
-    };
+    let set = |r: &CompareRow| set(r.run.contact.and_then(|c| c.differ));
+    let several = report.facts.contact.is_some_and(|c| c.solved > 1);
     let table = Table::of(&report.rows)
         .words("method", |r| &r.run.method)
         .numbers("parts", |r| count(r.run.subdomains))
@@ -34,6 +31,9 @@ pub fn text(report: &CompareReport) -> String {
         .numbers("MB", |r| fixed(r.memory_mb, 0))
         .numbers("MB net", |r| fixed(net(r), 0))
         .numbers("error", |r| scientific(r.run.error))
+        .when(several, |t| {
+            t.numbers("ours", |r| scientific(r.run.from_ours))
+        })
         .numbers("residual", |r| scientific(r.run.residual))
         .when(contact, |t| t.numbers("set", |r| set(r)))
         .when(laws, |t| {
@@ -43,8 +43,9 @@ pub fn text(report: &CompareReport) -> String {
         })
         .words("outcome", |r| outcome(&r.run, |text| note(r, text)))
         .table();
+    let steps = load_steps(&report.rows);
     format!(
-        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
+        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n{steps}\
          All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
          parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
          against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
@@ -71,6 +72,85 @@ pub fn text(report: &CompareReport) -> String {
     )
 }
 
+/// A load step of a method in a table.
+struct StepRow<'a> {
+    row: &'a CompareRow,
+    number: usize,
+    step: &'a CompareStep,
+}
+
+fn step_rows(rows: &[CompareRow]) -> Vec<StepRow<'_>> {
+    let mut out: Vec<StepRow> = Vec::new();
+    for row in rows {
+        let steps = row.run.load_steps.iter().enumerate();
+        out.extend(steps.map(|(k, step)| StepRow {
+            row,
+            number: k + 1,
+            step,
+        }));
+    }
+    out.sort_by_key(|row| row.number);
+    out
+}
+
+/// The load steps as a table, where several are solved.
+fn load_steps(rows: &[CompareRow]) -> String {
+    let rows = step_rows(rows);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let table = Table::of(&rows)
+        .numbers("load step", |r| r.number.to_string())
+        .words("method", |r| &r.row.run.method)
+        .numbers("ranks", |r| ranks_and_threads(&r.row.run))
+        .numbers("outer", |r| count(r.step.contact.outer))
+        .numbers("it", |r| count(r.step.iterations))
+        .numbers("set-up s", |r| fixed(r.step.setup, 3))
+        .numbers("solve s", |r| fixed(r.step.solve, 3))
+        .numbers("error", |r| scientific(r.step.error))
+        .numbers("ours", |r| scientific(r.step.from_ours))
+        .numbers("residual", |r| scientific(r.step.residual))
+        .numbers("set", |r| set(r.step.contact.differ))
+        .numbers("forces", |r| scientific(r.step.contact.forces))
+        .numbers("law", |r| scientific(r.step.contact.law))
+        .table();
+    format!("{table}\n")
+}
+
+/// The load steps for programs; `None` where not several are solved.
+pub fn steps_csv(rows: &[CompareRow]) -> Option<Table> {
+    let rows = step_rows(rows);
+    let table = Table::of(&rows)
+        .exact("load_step", |r| r.number)
+        .exact("method", |r| r.row.run.method.as_str())
+        .exact("ranks", |r| r.row.run.ranks)
+        .exact("threads", |r| r.row.run.threads)
+        .exact("outer_steps", |r| r.step.contact.outer)
+        .exact("iterations", |r| r.step.iterations)
+        .exact("setup_seconds", |r| r.step.setup)
+        .exact("solve_seconds", |r| r.step.solve)
+        .exact("error", |r| r.step.error)
+        .exact("from_ours", |r| r.step.from_ours)
+        .exact("residual", |r| r.step.residual)
+        .exact("active_rows", |r| r.step.contact.active)
+        .exact("active_differ", |r| r.step.contact.differ)
+        .exact("feasibility", |r| r.step.contact.feasibility)
+        .exact("min_multiplier", |r| r.step.contact.min_multiplier)
+        .exact("force_error", |r| r.step.contact.forces)
+        .exact("law_error", |r| r.step.contact.law)
+        .table();
+    (!rows.is_empty()).then_some(table)
+}
+
+/// How many rows hold here and not in the direct solution, or the other way round.
+fn set(differ: Option<usize>) -> String {
+    match differ {
+        None => "–".to_string(),
+        Some(0) => "same".to_string(),
+        Some(n) => format!("{n} differ"),
+    }
+}
+
 /// Sentences about the inequalities, below the table.
 fn inequalities(c: &CompareInequalities) -> String {
     let mut text = format!(
@@ -93,7 +173,14 @@ fn inequalities(c: &CompareInequalities) -> String {
             scientific(Some(law))
         );
     }
-    if c.load_steps > 1 {
+    if c.load_steps > 1 && c.solved > 1 {
+        text += &format!(
+            "All {} load steps are solved, each from the end of the one before: seconds, outer and it are sums, error, \
+             residual, forces\nand law those of the worst load step; ours: the distance from the solution of the first \
+             method, in the energy norm.\n",
+            c.load_steps
+        );
+    } else if c.load_steps > 1 {
         text += &format!(
             "Of {} load steps the last one is solved, alone.\n",
             c.load_steps
@@ -126,6 +213,7 @@ pub fn csv(rows: &[CompareRow]) -> Table {
         .exact("min_multiplier", |r| {
             r.run.contact.and_then(|c| c.min_multiplier)
         })
+        .exact("from_ours", |r| r.run.from_ours)
         .exact("force_error", |r| r.run.contact.and_then(|c| c.forces))
         .exact("law_error", |r| r.run.contact.and_then(|c| c.law))
         .exact("rtol", |r| r.run.rtol)

@@ -54,9 +54,54 @@ fn compare_names_the_outcome() {
     assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
     let csv = csv(&[failed]).to_csv();
     let end =
-        "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,,,,,,,,false,CONVERGED_RTOL,,\
+        "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,,,,,,,,,false,CONVERGED_RTOL,,\
                PETSc was built without hypre\n";
     assert!(csv.ends_with(end), "{csv}");
+}
+
+/// Load steps stand together, whatever the order of the methods, and a cell has its value in full in the CSV.
+#[test]
+fn load_steps_have_a_table_of_their_own() {
+    let row = |method: &str, error: f64| CompareRow {
+        run: MethodRun {
+            method: method.into(),
+            ranks: 2,
+            load_steps: [1.0, 2.0]
+                .map(|factor| CompareStep {
+                    iterations: Some(7),
+                    error: Some(factor * error),
+                    contact: CompareContact {
+                        outer: Some(4),
+                        active: 9,
+                        differ: Some(2),
+                        ..CompareContact::default()
+                    },
+                    ..CompareStep::default()
+                })
+                .to_vec(),
+            ..MethodRun::default()
+        },
+        ..CompareRow::default()
+    };
+    let rows = vec![row("fetifeti", 0.125), row("mumps", 0.5)];
+    let text = load_steps(&rows);
+    let lines: Vec<Vec<&str>> = text
+        .lines()
+        .map(|l| l.split_whitespace().collect())
+        .collect();
+    let first: Vec<[&str; 2]> = lines[2..6].iter().map(|l| [l[0], l[1]]).collect();
+    assert_eq!(
+        first,
+        [
+            ["1", "fetifeti"],
+            ["1", "mumps"],
+            ["2", "fetifeti"],
+            ["2", "mumps"]
+        ]
+    );
+    let csv = steps_csv(&rows).expect("load steps").to_csv();
+    assert!(csv.contains("\n2,mumps,2,0,4,7,,,1,,,9,2,"), "{csv}");
+    assert!(steps_csv(&[CompareRow::default()]).is_none());
 }
 
 #[test]
@@ -116,5 +161,5 @@ fn contact_has_columns_of_its_own() {
     assert!(text.contains("Of 4 load steps the last one"));
     assert!(text.contains("Nothing holds 2 rigid motions:"));
     let csv = csv(&report.rows[1..2]).to_csv();
-    assert!(csv.contains(",,9,3,0.5,-0.25,,,,true,"), "{csv}");
+    assert!(csv.contains(",,9,3,0.5,-0.25,,,,,true,"), "{csv}");
 }

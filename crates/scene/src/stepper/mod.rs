@@ -355,6 +355,11 @@ impl Stepper {
         &self.solver
     }
 
+    /// The solver, for another stepper.
+    pub fn into_solver(self) -> FetiFeti {
+        self.solver
+    }
+
     /// The solver, for what changes it without changing its rows and loads.
     pub fn solver_mut(&mut self) -> &mut FetiFeti {
         &mut self.solver

@@ -67,7 +67,7 @@ struct Verdict {
 }
 
 impl<'a, 'm> StickAndSlip<'a, 'm> {
-    /// The loop from the set of `state`, where all nodes stick. Collective.
+    /// The loop from the set of `state`, where all nodes stick unless it has multipliers. Collective.
     pub fn new(
         (rows, reduced): (&'m Inequalities, &Reduced),
         equations: &'a RefCell<Equations<'m>>,
@@ -75,10 +75,13 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
     ) -> StickAndSlip<'a, 'm> {
         let tuning = FrictionTuning::DEFAULT;
         let give = rows.give(&reduced.diagonal());
-        let (zeros, all) = (vec![0.0; rows.len()], vec![true; rows.len()]);
+        let (lambda, sticks) = match state.lambda.is_empty() {
+            true => (vec![0.0; rows.len()], vec![true; rows.len()]),
+            false => (rows.of_scene(&state.lambda), state.active.clone()),
+        };
         let beside = rows.beside();
         let node = |given| {
-            let at = (&zeros[..], &all[..]);
+            let at = (&lambda[..], &sticks[..]);
             Node::new(given, |r| r, beside[given.normal], at, &give, &tuning)
         };
         let list: Vec<Node> = rows.friction.iter().map(node).collect();
@@ -102,9 +105,9 @@ impl<'a, 'm> StickAndSlip<'a, 'm> {
     /// Multipliers and gaps of a solve as nodes see them: in units of the scene, along and across slips.
     fn seen(&self, solved: &Solved) -> [Vec<f64>; 2] {
         let (rows, judged) = (self.rows, &solved.judged);
-        let each = || (0..rows.len()).map(|r| (r, rows.scale_of(r)));
-        let mut lambda: Vec<f64> = each().map(|(r, s)| judged.lambda[r] / s).collect();
-        let mut gaps: Vec<f64> = each().map(|(r, s)| judged.gaps[r] * s).collect();
+        let mut lambda = rows.of_scene(&judged.lambda);
+        let each = judged.gaps.iter().enumerate();
+        let mut gaps: Vec<f64> = each.map(|(r, gap)| gap * rows.scale_of(r)).collect();
         for node in &self.nodes.list {
             if let [a, b] = node.tangential[..] {
                 [lambda[a], lambda[b]] = node.on_rows([lambda[a], lambda[b]]);
@@ -265,6 +268,8 @@ impl Strategy<AssembledCourse> for StickAndSlip<'_, '_> {
         end: OuterEnd,
     ) -> Result<ActiveSetEnd> {
         let last = self.last.expect("the loop ends at a solution");
-        self.equations.borrow().ended(last, (steps, seconds), end)
+        let mut end = self.equations.borrow().ended(last, (steps, seconds), end)?;
+        Nodes::sticking(&self.nodes.list, &mut end.held);
+        Ok(end)
     }
 }

@@ -204,9 +204,7 @@ fn rounds(
                 let (numbers, solutions): (Vec<usize>, Vec<_>) = first.into_iter().unzip();
                 let verdict = methods.judge(solutions)?;
                 judged(&mut now.facts, &case.scene, &verdict);
-                for (k, judgement) in numbers.into_iter().zip(&verdict.solutions) {
-                    sentence(&mut now.methods[k].run, judgement);
-                }
+                sentence(&mut now.methods, |row| &mut row.run, numbers, &verdict);
             }
             now.rounds = round;
             now.sum_up();
