@@ -148,19 +148,42 @@ fn a_loose_block_on_gaps_slides_beyond_the_coefficient_times_the_force() {
     assert!(run.stderr.contains("slides along"), "{}", run.stderr);
 }
 
-/// Between two bars that pull on each other the force of friction is inner. They stick to each other while one pulls
-/// the other with less than μN = 3, half of the load; then each has its own displacement.
-#[test]
-fn gaps_between_bodies_carry_friction() {
+/// Two bars with gaps between them, of which the first is pulled and pressed. `gap` is the line of *GAP.
+fn two_bars(gap: &str, steps: &str) -> String {
     let second =
         "102,2,0,0\n103,2,1,0\n106,2,0,1\n107,2,1,1\n111,4,0,0\n114,4,1,0\n115,4,0,1\n118,4,1,1\n\
                   *NSET,NSET=FACING\n102,103,106,107\n*NSET,NSET=END\n111,114,115,118\n\
                   *ELEMENT,TYPE=C3D8,ELSET=OTHER\n2,102,111,114,103,106,115,118,107\n";
     let section = "*SOLID SECTION,ELSET=OTHER,MATERIAL=M\n";
-    let pulls = [5.4, 6.6].map(|pull| step(pull, 10.0)).concat();
-    let gap = format!("0.,0.,0.,1.\n*FRICTION\n.3\n{section}");
+    let gap = format!("{gap}\n*FRICTION\n.3\n{section}");
     let held = "END,1,3\nFACING,3\n";
-    let deck = bar(&format!("{second}{}", gaps(true)), &gap, held, &pulls);
+    bar(&format!("{second}{}", gaps(true)), &gap, held, steps)
+}
+
+/// Its pairs of nodes have the area of *GAP, whatever faces lie around them.
+#[test]
+fn the_plan_has_the_area_of_gaps() {
+    for (area, shown) in [("", "4"), (",2.5", "10")] {
+        let deck = two_bars(&format!("0.,0.,0.,1.{area}"), &step(5.4, 10.0));
+        let scratch = Scratch::new(&format!("deck_gaps_plan{area}"));
+        let run = run_fetifeti(1, &["plan", &scratch.file("bar.inp", &deck)]);
+        assert_eq!(run.code, 0, "{}", run.all());
+        // Beside the faces that touch there are four pairs of nodes, with a gap of 0 and no angle.
+        let pairs = run.stdout.lines().filter(|l| l.starts_with("OTHER - BAR"));
+        let pairs: Vec<String> = pairs
+            .map(|l| l.split_whitespace().skip(3).collect())
+            .collect();
+        assert!(pairs.contains(&format!("404{shown}0–")), "{}", run.stdout);
+        assert_eq!(pairs.len(), 2, "{}", run.stdout);
+    }
+}
+
+/// Between two bars that pull on each other the force of friction is inner. They stick to each other while one pulls
+/// the other with less than μN = 3, half of the load; then each has its own displacement.
+#[test]
+fn gaps_between_bodies_carry_friction() {
+    let pulls = [5.4, 6.6].map(|pull| step(pull, 10.0)).concat();
+    let deck = two_bars("0.,0.,0.,1.", &pulls);
     let report = check("bars", &deck, &[[5.4e-3, -2.7], [3.6 / 500.0, -3.6]]);
     let interfaces = report["contact"]["interfaces"].as_array().expect("gaps");
     assert_eq!(

@@ -55,23 +55,25 @@ fn grid(counts: [usize; 3], dim: usize) -> String {
     each.join(" x ")
 }
 
-/// The pairs of bodies that touch or face each other, with the area, the gaps and the angle between their sides.
+/// The pairs of bodies that touch or face each other, by faces or by pairs of nodes, with the area, the gaps and the
+/// angle between their sides.
 pub(super) fn interfaces(scene: &Scene, plan: &ScenePlan) -> String {
     let surfaces = surfaces(scene);
     if plan.interfaces.is_empty() {
         return surfaces;
     }
-    let faces = plan
-        .interfaces
-        .iter()
-        .enumerate()
-        .filter(|(_, i)| !i.corner);
+    // Pairs of nodes with an area of their own are no faces, and still carry pressures.
+    let faces = plan.interfaces.iter().enumerate();
+    let faces = faces.filter(|(k, i)| !i.corner || scene.interfaces[*k].area.is_some());
     let name = |b: usize| &plan.bodies[b].name;
     let listed: Vec<(&InterfacePlan, SidePair)> = faces
         .clone()
         .take(LIST)
         .map(|(k, i)| (i, scene.side_pair(k)))
         .collect();
+    if listed.is_empty() {
+        return surfaces;
+    }
     let table = Table::of(&listed)
         .words("touch", |(i, _)| match i.bodies {
             [a, b] if a == b => format!("{} - itself", name(a)),
@@ -82,9 +84,12 @@ pub(super) fn interfaces(scene: &Scene, plan: &ScenePlan) -> String {
         .when(plan.contact_pairs > 0, |t| {
             t.numbers("contact", |(i, _)| i.contact)
         })
-        .numbers(size(scene), |(_, p)| short(p.area))
+        .numbers(size(scene), |(_, p)| area(p.area))
         .numbers("gap", |(_, p)| range(p.gap))
-        .numbers("angle", |(_, p)| format!("{:.1}°", p.angle))
+        .numbers("angle", |(i, p)| match i.corner {
+            true => "–".to_string(),
+            false => format!("{:.1}°", p.angle),
+        })
         .when(listed.iter().any(|(i, _)| i.multipliers.is_some()), |t| {
             t.words("mortar", |(i, _)| match i.multipliers {
                 Some(b) => format!("multipliers on {}", name(b)),
@@ -101,6 +106,14 @@ fn size(scene: &Scene) -> &'static str {
         "length"
     } else {
         "area"
+    }
+}
+
+/// An area, or a dash where there is none, as between nodes without a common face.
+fn area(area: f64) -> String {
+    match area {
+        0.0 => "–".to_string(),
+        area => short(area),
     }
 }
 
@@ -122,7 +135,7 @@ fn surfaces(scene: &Scene) -> String {
     let table = Table::of(all.iter().take(LIST))
         .words("rigid surface", |s| &s.name)
         .numbers("nodes", |s| s.nodes)
-        .numbers(size(scene), |s| short(s.area))
+        .numbers(size(scene), |s| area(s.area))
         .numbers("gap", |s| range(s.gap))
         .table();
     format!("{table}{}\n", more(all.len(), "rigid surfaces"))

@@ -11,7 +11,8 @@ use std::collections::HashSet;
 /// The sides of two bodies that touch or face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SidePair {
-    /// The area (in the plane the length) of the first body's cells that have all their nodes opposite the second body.
+    /// The area (in the plane the length) of the first body's cells that have all their nodes opposite the second body;
+    /// where each pair of nodes was given an area, the sum of these.
     pub area: f64,
     /// The smallest and the largest gap: the distance of opposite nodes, with the gap of the contact added to it;
     /// negative where the bodies overlap.
@@ -56,7 +57,8 @@ impl Scene {
         found.collect()
     }
 
-    /// The sides of interface `k`; at corners everything is zero.
+    /// The sides of interface `k`. At corners everything is zero but the area and the gaps of pairs of nodes that have
+    /// an area of their own.
     pub fn side_pair(&self, k: usize) -> SidePair {
         let interface = &self.interfaces[k];
         let mut out = SidePair {
@@ -64,7 +66,8 @@ impl Scene {
             gap: [0.0; 2],
             angle: 0.0,
         };
-        if interface.shape == InterfaceShape::Corner {
+        let given = interface.area;
+        if interface.shape == InterfaceShape::Corner && given.is_none() {
             return out;
         }
         let gaps = interface.shared.iter().zip(&interface.distances);
@@ -74,6 +77,10 @@ impl Scene {
         });
         let ends = [f64::INFINITY, f64::NEG_INFINITY];
         out.gap = gaps.fold(ends, |[low, high], g| [low.min(g), high.max(g)]);
+        if let Some(area) = given {
+            out.area = area * interface.shared.len() as f64;
+            return out;
+        }
 
         let [first, second] = [0, 1].map(|i| {
             let nodes: Vec<usize> = interface.shared.iter().map(|s| s.nodes[i]).collect();
