@@ -1,6 +1,6 @@
 //! Axisymmetric bodies: they lie to the right of the axis x = 0, and their nodes on it stay there.
 
-use super::body::bounds_of;
+use super::body::{bounds_of, Body};
 use super::model::body::BodySpec;
 use base::Result;
 use elements::form::Form;
@@ -48,4 +48,19 @@ pub(super) fn constrain_axis(body: &mut BodySpec, form: &Form) -> Result<()> {
         body.given.extend(on_axis);
     }
     Ok(())
+}
+
+/// Whether a node of a side has no area because it lies on the axis, as ends of edges of second order do: the integral
+/// of its function around the axis is 0.
+pub(super) fn has_no_area(body: &Body, form: &Form, side: usize, node: usize) -> bool {
+    let near = ON_AXIS * body.bounds[1][0].abs();
+    if !form.is_axial() || body.spec.position(node)[0] > near {
+        return false;
+    }
+    let faces = body.spec.faces(side);
+    let areas = faces.filter_map(|face| {
+        let place = face.nodes.iter().position(|&n| n == node)?;
+        Some(body.spec.face_areas(side, &face, form)[place])
+    });
+    areas.sum::<f64>() == 0.0
 }

@@ -5,6 +5,7 @@ use super::mortar;
 use super::obstacles::Obstacle;
 use super::points::InterfacePoint;
 use super::row::Row;
+use crate::axis;
 use crate::body::Body;
 use crate::geometry::interface::BodyInterface;
 use crate::model::spec::SceneSpec;
@@ -13,6 +14,7 @@ use crate::rows::equations;
 use crate::rows::laws;
 use crate::rows::points;
 use base::Result;
+use fetifeti::problem::RowSource;
 use std::collections::HashSet;
 
 /// The rows with the points at which nodes meet, and sentences about them.
@@ -36,6 +38,23 @@ pub(crate) struct Joined<'a> {
 }
 
 impl Joined<'_> {
+    /// Whether a soft row has no force whatever its overclosure is: its node has no area, on an axis of symmetry.
+    fn is_forceless(&self, bodies: &[Body], row: &Row) -> bool {
+        if !laws::is_soft(self.spec, row) {
+            return false;
+        }
+        let side = match row.source {
+            RowSource::Obstacle(k) if self.obstacles[k].area.is_none() => self.obstacles[k].side,
+            RowSource::Interface(k) if self.interfaces[k].area.is_none() => {
+                let interface = &self.interfaces[k];
+                interface.sides[interface.order[0]]
+            }
+            _ => return false,
+        };
+        let first = row.members[0].expect("a contact has a first node");
+        axis::has_no_area(&bodies[first.body], &self.spec.form, side, first.node)
+    }
+
     /// Makes the rows; given values are checked against those of load step `step`, or of all steps.
     ///
     /// # Errors
@@ -64,7 +83,7 @@ impl Joined<'_> {
         checks.apply(&mut points, &mut rows)?;
         points.retain(|p| (self.owns)(p.subdomain));
         points.shrink_to_fit();
-        rows.retain(|row| (self.owns)(row.subdomain));
+        rows.retain(|row| (self.owns)(row.subdomain) && !self.is_forceless(bodies, row));
         let (mortar, notes) = mortar::collect(
             bodies,
             &spec.form,

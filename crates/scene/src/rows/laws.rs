@@ -250,6 +250,13 @@ fn tangential(bodies: &[Body], normal: &Row, direction: [f64; 3]) -> Row {
     }
 }
 
+/// Whether a row is soft: it has a force by its overclosure and its area.
+pub(crate) fn is_soft(spec: &SceneSpec, row: &Row) -> bool {
+    let entries = row.limits().iter().filter_map(|l| l.entry);
+    let mut laws = entries.filter_map(|entry| of_entry(spec, entry));
+    laws.any(|law| law.stiffness.is_some())
+}
+
 /// Whether a row has friction: its tangential rows have terms in all components at its nodes.
 pub(crate) fn has_friction(spec: &SceneSpec, row: &Row) -> bool {
     let entries = row.limits().iter().filter_map(|l| l.entry);
