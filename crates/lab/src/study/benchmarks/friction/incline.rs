@@ -9,7 +9,7 @@ use base::Result;
 const FRICTION: f64 = 0.3;
 
 /// tan α / μ on both sides of 1.
-const SLOPES: [f64; 4] = [0.9, 0.99, 1.01, 1.1];
+const SLOPES: [f64; 6] = [0.9, 0.99, 0.9999, 1.0001, 1.01, 1.1];
 
 /// The largest permitted error of a force, relative to the weight, and of |τ| beside μ p at a node.
 const LIMIT: f64 = 1e-8;
