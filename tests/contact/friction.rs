@@ -61,6 +61,38 @@ fn a_block_on_an_incline_stands_up_to_its_friction() {
     }
 }
 
+/// Near the angle of friction all nodes but one slip. On the way there the forces of friction may be larger than the
+/// load, and then push the block up: no reason to refuse it.
+#[test]
+fn a_block_of_second_order_stands_near_the_angle_of_friction() {
+    for (part, n) in [
+        (0.99999, 16),
+        (0.999_999_9, 8),
+        (0.999_999_9, 16),
+        (1.00001, 16),
+    ] {
+        let (pull, wide) = (0.3 * part, 2 * n);
+        let found = solved(format!(
+            "physics = \"elasticity\"\norder = 2\n[[body]]\nname = \"block\"\nsize = [2, 1]\n\
+             elements = [{wide}, {n}]\nsubdomains = [2, 1]\nyoung = 1000\npoisson = 0.3\nload = [{pull}, -1]\n\
+             [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\nplane = {{ point = [0, 0], normal = [0, 1] }}\n\
+             friction = 0.3\n"
+        ));
+        let Ok(solution) = found else {
+            assert!(part > 1.0, "{part}, {n} elements");
+            continue;
+        };
+        assert!(
+            part < 1.0 && solution.converged(),
+            "{part}: {}",
+            solution.status
+        );
+        let rows = solution.tangential_rows();
+        let drag: f64 = rows.iter().map(|r| r.multiplier * r.normal()[0]).sum();
+        near(drag, 2.0 * pull, 1e-6, "friction");
+    }
+}
+
 /// Contacts that `auto` finds have its law, in the plane and in space: a block stands on another one up to its
 /// friction, and has the forces of one whose contact is written out. A law of soft contact gives way.
 #[test]

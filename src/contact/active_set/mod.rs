@@ -280,24 +280,37 @@ impl<'a> ActiveSet<'a> {
         self.fresh = false;
     }
 
-    /// Puts rows into `active` so that the load drives no body away, with `friction` also tangential ones with these
-    /// scores. Collective.
+    /// Puts rows into `active` so that the load drives no body away, tangential ones with these scores. Collective.
     ///
     /// # Errors
     /// Bodies that the load pushes away for ever.
-    pub fn hold(
-        &self,
-        active: &mut [bool],
-        load: &KernelLoad,
-        friction: Option<&[f64]>,
-    ) -> Result<usize> {
+    pub fn hold(&self, active: &mut [bool], load: &KernelLoad, friction: &[f64]) -> Result<usize> {
         let dual = self.method.dual();
         let (gaps, law) = (&self.gaps, &dual.stiffness.jump.law);
         let score = |r: usize| match law[r].is_friction() {
-            true => friction.map_or(f64::NEG_INFINITY, |scores| scores[r]),
+            true => friction[r],
             false => self.state.lambda[r] + gaps[r],
         };
         self.repairs.hold(&dual, active, &score, load)
+    }
+
+    /// Says which bodies slide away where tangential rows hold none but those in `active`: `load` has given forces of
+    /// friction, and `alone` none. Collective.
+    ///
+    /// # Errors
+    /// Such bodies.
+    pub fn sliding(
+        &self,
+        active: &mut [bool],
+        (load, alone): (&KernelLoad, &KernelLoad),
+    ) -> Result<()> {
+        let dual = self.method.dual();
+        let (gaps, law) = (&self.gaps, &dual.stiffness.jump.law);
+        let score = |r: usize| match law[r].is_friction() {
+            true => f64::NEG_INFINITY,
+            false => self.state.lambda[r] + gaps[r],
+        };
+        self.repairs.sliding(&dual, active, &score, (load, alone))
     }
 
     /// The solution at the present state of the loop, after these steps. Collective.

@@ -207,7 +207,7 @@ impl<'a> Friction<'a> {
         let mut scores = vec![0.0; active.len()];
         self.nodes.score(self.inner.length, &mut scores);
         let mut held = active.clone();
-        let put_back = self.inner.hold(&mut held, &load, Some(&scores))?;
+        let put_back = self.inner.hold(&mut held, &load, &scores)?;
         let comm = self.method.session.comm();
         let restored = self.nodes.stick(comm, &active, &held);
         let law = &self.method.dual().stiffness.jump.law;
@@ -216,7 +216,8 @@ impl<'a> Friction<'a> {
         others.for_each(|((active, held), _)| *active = held);
         if self.nodes.slides(put_back > 0) {
             // The load drives a body beside all forces of friction that are given.
-            if let Err(error) = self.inner.hold(&mut active, &load, None) {
+            let loads = (&load, &self.loads.kernel);
+            if let Err(error) = self.inner.sliding(&mut active, loads) {
                 // Its motion has a better name where no forces of friction at all balance the load. They do in a press
                 // fit, whose forces the shape of bodies bounds.
                 self.carried()?;

@@ -183,7 +183,8 @@ impl FrictionLagrangian<'_> {
                     false => score(i),
                 };
                 let mut held = active.clone();
-                if let Err(error) = self.repairs.hold(&dual, &mut held, &score, &kernel) {
+                let loads = (&kernel, &self.loads.kernel);
+                if let Err(error) = self.repairs.sliding(&dual, &mut held, &score, loads) {
                     self.is_carried()?;
                     return Err(error);
                 }

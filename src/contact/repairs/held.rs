@@ -26,13 +26,14 @@ use parallel::parcels::Parcels;
 /// and none with the score −∞. Returns the number of rows that were put back. Collective.
 ///
 /// # Errors
-/// Bodies that the load pushes away for ever: no row opposes a driven motion.
+/// Bodies that the load pushes away for ever: no row opposes a driven motion, and the load without given forces of
+/// friction, `alone`, drives it, too. Friction can hold a body, and drives none.
 pub fn restore_coercivity(
     problem: &Problem,
     dual: &Dual,
     active: &mut [bool],
     score: &dyn Fn(usize) -> f64,
-    load: &KernelLoad,
+    (load, alone): (&KernelLoad, Option<&KernelLoad>),
     tuning: &Tuning,
 ) -> Result<usize> {
     let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
@@ -131,6 +132,12 @@ pub fn restore_coercivity(
                     active[offer.offered.row] = true;
                 }
             }
+        }
+    }
+    if let Some(alone) = alone {
+        let rest = [rest.clone()];
+        if alone.along(comm, known, &rest).work(&rest[0])[0] <= 0.0 {
+            return Ok(restored);
         }
     }
     pushed_away(problem, dual, &rest, tuning.nearly_balanced * load.largest)?;

@@ -48,7 +48,24 @@ impl<'a> Repairs<'a> {
         load: &KernelLoad,
     ) -> Result<usize> {
         let problem = &self.method.problem;
-        held::restore_coercivity(problem, dual, active, score, load, self.tuning)
+        held::restore_coercivity(problem, dual, active, score, (load, None), self.tuning)
+    }
+
+    /// Says which bodies slide away, where no tangential row is left to hold them: `load` has given forces of friction,
+    /// and `alone` is the load without them. Collective.
+    ///
+    /// # Errors
+    /// Such bodies.
+    pub fn sliding(
+        &self,
+        dual: &Dual,
+        active: &mut [bool],
+        score: &dyn Fn(usize) -> f64,
+        (load, alone): (&KernelLoad, &KernelLoad),
+    ) -> Result<()> {
+        let problem = &self.method.problem;
+        let loads = (load, Some(alone));
+        held::restore_coercivity(problem, dual, active, score, loads, self.tuning).map(|_| ())
     }
 
     /// Moves bodies that nothing holds to where no row is violated, or as little as possible. Returns the gaps
