@@ -231,13 +231,16 @@ fn compare(ids: impl Iterator<Item = u64>, method: Method) -> Tally {
         }
         tally.ratios.sort_by(f64::total_cmp);
         tally.iterations.sort_by(f64::total_cmp);
-        let Tally { states, ratios, .. } = &tally;
-        let [median, most] = [ratios.len() / 2, ratios.len() - 1].map(|k| ratios[k]);
-        let iterations = tally.iterations[tally.iterations.len() / 2];
+        let states = &tally.states;
+        let quantiles = |list: &[f64]| {
+            let at = |part: f64| list[(part * (list.len() - 1) as f64).round() as usize];
+            let [low, median, high, tenth, most] = [0.25, 0.5, 0.75, 0.9, 1.0].map(at);
+            format!("quartiles {low:.2}, {median:.2}, {high:.2}, nine tenths {tenth:.2}, most {most:.2}")
+        };
+        let [steps, iterations] = [&tally.ratios, &tally.iterations].map(|list| quantiles(list));
         println!(
             "{} right (forces within {:.1e}), {} undecided, {} not solved; rows that stick, slip, are apart: \
-             {states:?}; steps over those without friction: median {median:.2}, most {most:.2}; iterations: median \
-             {iterations:.2}",
+             {states:?}; steps over those without friction: {steps}; iterations: {iterations}",
             tally.right, tally.force, tally.undecided, tally.failed
         );
         tally
