@@ -108,7 +108,9 @@ pub fn solve_to(
     const SMALLEST: f64 = 1e-16;
     // A residual counts as smaller below this fraction of the previous one.
     const GAIN: f64 = 0.9;
-    let mut rtol = first;
+    // So many solves may gain nothing: a loop of states ends with more than its tolerance, or with less.
+    const IDLE: usize = 2;
+    let (mut rtol, mut idle) = (first, 0);
     let mut best: Option<(Attempt, f64)> = None;
     loop {
         let now = solve(rtol)?;
@@ -123,7 +125,10 @@ pub fn solve_to(
         let stuck = best.as_ref().is_some_and(|(best, _)| {
             let [before, after] = [best, &now].map(|a| a.outcome.iterations);
             let more = after.is_none() || after > before;
-            !now.converged || (more && now.residual > GAIN * best.residual)
+            if more && now.residual > GAIN * best.residual {
+                idle += if after.is_none() { IDLE } else { 1 };
+            }
+            !now.converged || idle >= IDLE
         });
         let residual = now.residual;
         if best

@@ -92,6 +92,32 @@ fn tolerances_shrink_until_the_assembled_residual_is_met() {
     assert_eq!(end.iterations, Some(9));
 }
 
+/// The residual at the end of a loop of states need not be smaller where the tolerance is: one solve in vain is no end.
+#[test]
+fn a_solve_may_gain_nothing_once() {
+    let driven = |residuals: [f64; 4]| {
+        with_session(move |session| {
+            let mut solves = 0;
+            let (end, _, message) = solve_to(1e-6, 1e-6, |_| {
+                solves += 1;
+                Ok(Attempt {
+                    u: vec![PetscVec::seq(session, 1)?],
+                    residual: residuals[solves - 1],
+                    converged: true,
+                    outcome: Outcome {
+                        iterations: Some(10 * solves),
+                        ..Outcome::default()
+                    },
+                })
+            })
+            .expect("nothing fails");
+            (end.residual, solves, message.is_some())
+        })
+    };
+    assert_eq!(driven([1.6e-6, 2.2e-6, 1e-7, 0.0]), (1e-7, 3, false));
+    assert_eq!(driven([1.6e-6, 2.2e-6, 1.7e-6, 0.0]), (1.6e-6, 3, true));
+}
+
 #[test]
 fn what_cannot_be_met_is_said() {
     let (end, message) = drive(1e-6, 300.0, 1e-5, 0.0);
