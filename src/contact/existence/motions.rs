@@ -147,8 +147,9 @@ fn as_seen(dual: &Dual, away: &KernelMotion, cones: &[FrictionCone]) -> KernelMo
         true => seen,
         false => away.clone(),
     };
-    // A name needs three digits. More of them would make a turn about a point far away of a slide.
-    let least = 1e-3 * seen.largest();
+    // A name needs two digits, and the proof may have no more: a turn by δ beside a slide lengthens slips by δ²/2. More
+    // of them would make a turn about a point far away of a slide.
+    let least = 2e-2 * seen.largest();
     KernelMotion(seen.0.into_iter().filter(|e| e.1.abs() > least).collect())
 }
 
