@@ -83,17 +83,15 @@ test: setup ## Check format, lints and documentation, then run every test; some 
 test-all: export FETIFETI_TEST_ALL = 1
 test-all: test ## As test, with all cases of every test (half an hour)
 
-# A newer PETSc than Debian's, from the source packages of the Python registry.
+# A newer PETSc than Debian's, from the source packages of the Python registry: the newest, or of this version.
 NEWER_DIR ?= $(TARGET)/newer
-NEWER_PETSC ?= 3.22.5
-NEWER_SLEPC ?= 3.22.2
+NEWER_PETSC ?=
+NEWER_SLEPC ?=
+INDICES ?= 32
 
-test-newer: setup-tests ## Build a newer PETSc and SLEPc, and test the plug-in, the C API and the solver with them
-	scripts/newer_petsc.sh "$(NEWER_DIR)" "$(NEWER_PETSC)" "$(NEWER_SLEPC)"
-	source "$(NEWER_DIR)/env" && export CARGO_TARGET_DIR="$(NEWER_DIR)/build-$(NEWER_PETSC)" && \
-	cargo test --workspace --no-fail-fast --lib --test operators --test embedding --test linear --test ranks \
-		--test contact \
-		-- --skip petsc4py --skip fortran --skip random
+test-newer: setup-tests ## Build the newest PETSc and SLEPc, and test the plug-in, the C API and the solver with them
+	INDICES=$(INDICES) scripts/newer_petsc.sh "$(NEWER_DIR)" "$(NEWER_PETSC)" "$(NEWER_SLEPC)"
+	scripts/test_newer.sh "$(NEWER_DIR)" $(INDICES) all
 
 # Some of malloc, valgrind, address, thread and miri; all without.
 PARTS ?=

@@ -1,17 +1,69 @@
 #!/bin/bash
 # Builds a newer PETSc and SLEPc than Debian's from the source packages of the Python registry (PyPI), into one folder:
-#   scripts/newer_petsc.sh FOLDER [PETSC_VERSION SLEPC_VERSION]
-# leaves FOLDER/petsc-VERSION and FOLDER/slepc-VERSION (both with arch-fetifeti) and FOLDER/env, to be sourced. What is
-# already built stays. MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; Debian's hypre is too old for
-# PETSc 3.22.
+#   scripts/newer_petsc.sh FOLDER [PETSC_VERSION [SLEPC_VERSION]]
+# The version is the newest of which the registry has both, unless it is given: 3.25 is the newest 3.25.x. SLEPc's is
+# the newest that belongs to it. Left are FOLDER/petsc-VERSION and FOLDER/slepc-VERSION and a file to be sourced,
+# FOLDER/env. What is already built stays. INDICES=64 in the environment: 64-bit indices, beside the others, with
+# FOLDER/env-64. With PETSc 3.23 and later come Fortran's modules, and petsc4py where indices have 32 bits.
+# MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; its PT-Scotch has 32-bit indices alone, and MUMPS
+# takes 64-bit ones as long as they fit into 32. Debian's hypre is too old for PETSc 3.22.
 set -euo pipefail
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
-petsc=${2:-3.22.5}
-slepc=${3:-3.22.2}
-arch=arch-fetifeti
+bits=${INDICES:-32}
 index=${PIP_INDEX_URL:-https://pypi.org/simple}
-jobs=$(nproc)
+jobs=${JOBS:-$(nproc)}
+# Taken where the registry is not reached and nothing is built yet.
+fallback=3.26.1
+
+# newest PETSC SLEPC: the versions to build, from the registry's pages.
+newest() {
+    python3 - "$index" "$1" "$2" <<'PYTHON'
+import re, sys, urllib.request
+index, petsc, slepc = sys.argv[1:]
+def versions(name, wanted):
+    text = urllib.request.urlopen(f"{index.rstrip('/')}/{name}/", timeout=60).read().decode()
+    found = {tuple(map(int, v)) for v in re.findall(rf"{name}-(\d+)\.(\d+)\.(\d+)\.tar\.gz", text)}
+    start = tuple(map(int, wanted.split("."))) if wanted else ()
+    return sorted(v for v in found if v[:len(start)] == start)
+try:
+    ours, theirs = versions("petsc", petsc), versions("slepc", slepc)
+except OSError as error:
+    sys.exit(f"The registry is not reached: {error}.")
+both = [v for v in ours if any(s[:2] == v[:2] for s in theirs)]
+if not both:
+    sys.exit(f"The registry has no PETSc {petsc} with a SLEPc {slepc} of the same minor version.")
+print(".".join(map(str, both[-1])), ".".join(map(str, max(s for s in theirs if s[:2] == both[-1][:2]))))
+PYTHON
+}
+
+if [ -n "${3:-}" ] && [[ ${2:-} == *.*.* ]]; then
+    petsc=$2 slepc=$3
+elif found=$(newest "${2:-}" "${3:-}"); then
+    read -r petsc slepc <<<"$found"
+elif [ -z "${2:-}" ] && petsc=$(sed -n 's/.*PETSC_DIR=.*petsc-\([0-9.]*\) .*/\1/p' "$folder/env" 2>/dev/null) &&
+    [ -n "$petsc" ]; then
+    slepc=$(sed -n 's/.*SLEPC_DIR=.*slepc-\([0-9.]*\) .*/\1/p' "$folder/env")
+    echo "Taken is what $folder has: PETSc $petsc and SLEPc $slepc."
+elif [ -z "${2:-}" ]; then
+    petsc=$fallback slepc=$fallback
+    echo "Taken is PETSc $petsc, the newest when this script was written."
+else
+    exit 1
+fi
+arch=arch-fetifeti env=$folder/env options=()
+if [ "$bits" = 64 ]; then
+    arch=arch-fetifeti-64 env=$folder/env-64
+    options=(--with-64-bit-indices=1)
+else
+    options=(--with-ptscotch-include=/usr/include/scotch
+        "--with-ptscotch-lib=[-lptesmumps,-lptscotch,-lptscotcherr,-lscotch,-lscotcherr]")
+fi
+# The bindings of Fortran are made by PETSc's own script from 3.23 on; before that by a program that is not here.
+minor=${petsc#*.} minor=${minor%%.*}
+fortran=0
+[ "$minor" -lt 23 ] || fortran=1
+echo "PETSc $petsc and SLEPc $slepc, indices of $bits bits"
 
 # fetch NAME VERSION: the source package, checked against the registry's own SHA-256, unpacked.
 fetch() {
@@ -51,25 +103,36 @@ export PETSC_DIR=$folder/petsc-$petsc SLEPC_DIR=$folder/slepc-$slepc PETSC_ARCH=
 
 if [ ! -e "$PETSC_DIR/$arch/lib/libpetsc.so" ]; then
     cd "$PETSC_DIR"
-    step "Configuring PETSc $petsc" "$folder/petsc-configure.log" ./configure PETSC_ARCH=$arch \
+    step "Configuring PETSc $petsc" "$folder/petsc-configure-$bits.log" ./configure PETSC_ARCH=$arch \
         --with-debugging=0 COPTFLAGS=-O2 CXXOPTFLAGS=-O2 FOPTFLAGS=-O2 --with-shared-libraries=1 \
-        "--with-blaslapack-lib=[-llapack,-lblas]" --with-x=0 --with-fortran-bindings=0 \
+        "--with-blaslapack-lib=[-llapack,-lblas]" --with-x=0 --with-fortran-bindings=$fortran \
         --with-scalapack-lib=-lscalapack-openmpi \
         --with-mumps-include=/usr/include \
-        "--with-mumps-lib=[-ldmumps,-lzmumps,-lsmumps,-lcmumps,-lmumps_common,-lpord]" \
-        --with-ptscotch-include=/usr/include/scotch \
-        "--with-ptscotch-lib=[-lptesmumps,-lptscotch,-lptscotcherr,-lscotch,-lscotcherr]"
-    step "Building PETSc $petsc" "$folder/petsc-make.log" make -j"$jobs" all
+        "--with-mumps-lib=[-ldmumps,-lzmumps,-lsmumps,-lcmumps,-lmumps_common,-lpord]" "${options[@]}"
+    step "Building PETSc $petsc" "$folder/petsc-make-$bits.log" make -j"$jobs" all
 fi
 if [ ! -e "$SLEPC_DIR/$arch/lib/libslepc.so" ]; then
     cd "$SLEPC_DIR"
-    step "Configuring SLEPc $slepc" "$folder/slepc-configure.log" ./configure
-    step "Building SLEPc $slepc" "$folder/slepc-make.log" make -j"$jobs" all
+    step "Configuring SLEPc $slepc" "$folder/slepc-configure-$bits.log" ./configure
+    step "Building SLEPc $slepc" "$folder/slepc-make-$bits.log" make -j"$jobs" all
 fi
 
-cat >"$folder/env" <<ENV
+python=$PETSC_DIR/$arch/python
+cat >"$env" <<ENV
 export PETSC_DIR=$PETSC_DIR SLEPC_DIR=$SLEPC_DIR PETSC_ARCH=$arch
 export PKG_CONFIG_PATH=$PETSC_DIR/$arch/lib/pkgconfig:$SLEPC_DIR/$arch/lib/pkgconfig
 export LD_LIBRARY_PATH=$PETSC_DIR/$arch/lib:$SLEPC_DIR/$arch/lib
+export PYTHONPATH=$python
 ENV
-echo "PETSc $petsc and SLEPc $slepc are ready: source $folder/env"
+
+# petsc4py, with a Cython of its own: Debian 12's is too old for it.
+if [ "$bits" = 32 ] && [ $fortran = 1 ] && [ ! -d "$python/petsc4py" ]; then
+    tools=$folder/python-tools
+    [ -e "$tools/bin/python" ] ||
+        step "Installing Cython" "$folder/cython.log" bash -c "
+            python3 -m venv --system-site-packages '$tools' && '$tools/bin/pip' install 'cython>=3' setuptools wheel"
+    step "Building petsc4py $petsc" "$folder/petsc4py.log" "$tools/bin/pip" install --no-deps --no-build-isolation \
+        --no-binary petsc4py --target "$python" "petsc4py==$petsc"
+fi
+
+echo "PETSc $petsc and SLEPc $slepc are ready: source $env"

@@ -56,4 +56,16 @@ cargo test --workspace --no-fail-fast "${inside[@]}" || status=1
 cargo test --workspace --no-fail-fast --doc || status=1
 wait $! || status=1
 cat "$log"
+
+# The plug-in with a newer PETSc, where somebody has built one: `make test-newer`, or scripts/newer_petsc.sh DIR.
+newer=${FETIFETI_NEWER:-$HOME/.cache/fetifeti/newer}
+for bits in 32 64; do
+    env=$newer/env
+    [ $bits = 32 ] || env=$newer/env-$bits
+    if [ -e "$env" ]; then
+        scripts/test_newer.sh "$newer" $bits || status=1
+    else
+        echo "test: no newer PETSc with indices of $bits bits, $env is missing"
+    fi
+done
 exit $status

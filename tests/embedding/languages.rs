@@ -19,10 +19,8 @@ fn a_fortran_program() {
 
 #[test]
 fn a_petsc4py_script() {
-    // Debian stores petsc4py next to the PETSc that it was built for.
-    let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
     let path = std::env::var("PYTHONPATH").unwrap_or_default();
-    let path = format!("{modules}:{path}");
+    let path = format!("{}:{path}", plugin::petsc4py());
     let script = Path::new(env!("FETIFETI_ROOT")).join("tests/plugin/host.py");
     let script = script.to_str().expect("the path is UTF-8");
     for ranks in [1, 4] {

@@ -6,11 +6,8 @@ use std::process::Command;
 
 use crate::installed::names_no_tree;
 use crate::support::mpi::{command, mpirun, Output, Scratch};
-use crate::support::plugin::library;
+use crate::support::plugin::{library, petsc4py};
 
-/// Debian stores petsc4py next to the PETSc that it was built for.
-const PETSC4PY: &str =
-    "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
 const ROOT: &str = env!("FETIFETI_ROOT");
 
 /// Runs a script of the source tree, which finds petsc4py, the package and the library.
@@ -27,7 +24,10 @@ pub fn script_with(
     env: &[(&str, &str)],
 ) -> Output {
     let others = std::env::var("PYTHONPATH").unwrap_or_default();
-    let path = format!("{PETSC4PY}:{ROOT}/wrappers/python/src:{modules}:{others}");
+    let path = format!(
+        "{}:{ROOT}/wrappers/python/src:{modules}:{others}",
+        petsc4py()
+    );
     let library = library();
     let dir = Path::new(&library)
         .parent()
@@ -106,7 +106,7 @@ fn the_package_is_installed_and_passes_its_tests() {
     let sources = copy_sources(&scratch.path("tree"));
     let place = scratch.path("packages");
     run(install(&sources, &place).env("FETIFETI_LIBRARY", library()));
-    let path = format!("{place}:{PETSC4PY}");
+    let path = format!("{place}:{}", petsc4py());
     let tests = format!("{sources}/tests");
     for ranks in [1, 2, 4] {
         let args = ["-m", "pytest", "-q", "-p", "no:cacheprovider", &tests];
@@ -163,7 +163,7 @@ fn pip_builds_the_library_where_there_is_none() {
     python
         .arg("-c")
         .arg("import fetifeti; fetifeti.register(); print(fetifeti.find_library())")
-        .env("PYTHONPATH", format!("{place}:{PETSC4PY}"));
+        .env("PYTHONPATH", format!("{place}:{}", petsc4py()));
     empty(&mut python);
     let found = run(&mut python);
     assert_eq!(found.trim(), format!("{place}/fetifeti/libfetifeti.so"));

@@ -5,8 +5,11 @@ use std::process::Command;
 
 use super::mpi::{mpirun, Output, Scratch};
 
-/// The library that cargo built for this test.
+/// The library that cargo built for this test, or another build of it: scripts/test_newer.sh has one for a newer PETSc.
 pub fn library() -> String {
+    if let Ok(path) = std::env::var("FETIFETI_TEST_LIBRARY") {
+        return path;
+    }
     let own = std::env::current_exe().expect("the test knows its own path");
     let deps = own.parent().expect("a test lies in a directory");
     let path = deps.join("libfetifeti.so");
@@ -30,6 +33,18 @@ fn pkg_config(args: &[&str]) -> Vec<String> {
         }
     }
     panic!("pkg-config does not know PETSc");
+}
+
+/// Where petsc4py of this PETSc lies: scripts/newer_petsc.sh puts it beside the library, Debian next to the PETSc that
+/// it was built for.
+pub fn petsc4py() -> String {
+    let of = |name| std::env::var(name).unwrap_or_default();
+    match std::env::var("PETSC_DIR") {
+        Ok(dir) => format!("{dir}/{}/python", of("PETSC_ARCH")),
+        Err(_) => {
+            "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages".into()
+        }
+    }
 }
 
 /// The first two numbers of PETSc's version.
@@ -197,12 +212,15 @@ impl Program {
 pub fn vector(path: &str) -> Vec<f64> {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let word = |at: usize| i32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes"));
-    assert_eq!(word(0), 1_211_214, "{path} is no vector");
-    let entries = bytes[8..].chunks_exact(8);
+    // With 64-bit indices both numbers of the header have eight bytes, of which the last four count here.
+    let wide = word(0) == 0;
+    let (class, length) = if wide { (4, 12) } else { (0, 4) };
+    assert_eq!(word(class), 1_211_214, "{path} is no vector");
+    let entries = bytes[length + 4..].chunks_exact(8);
     let out: Vec<f64> = entries
         .map(|b| f64::from_be_bytes(b.try_into().expect("eight bytes")))
         .collect();
-    assert_eq!(out.len(), word(4) as usize);
+    assert_eq!(out.len(), word(length) as usize);
     out
 }
 
