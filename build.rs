@@ -11,7 +11,9 @@ fn main() {
         "kspfetifeti.c",
         "kspbodies.c",
         "kspregister.c",
+        "pcfetifeti.c",
         "kspfetifeti.h",
+        "petsc-sys/compat.h",
     ] {
         println!("cargo:rerun-if-changed=wrappers/{file}");
     }
@@ -24,6 +26,7 @@ fn main() {
         .file("wrappers/kspfetifeti.c")
         .file("wrappers/kspbodies.c")
         .file("wrappers/kspregister.c")
+        .file("wrappers/pcfetifeti.c")
         .includes(include.split(':').filter(|dir| !dir.is_empty()))
         .define("PETSC_SKIP_COMPLEX", None)
         .flag_if_supported("-Wno-unused-parameter")

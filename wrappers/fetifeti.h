@@ -70,7 +70,7 @@ E*/
 #define FETIFETI_SLIP  3
 
 /*@C
-   FetiFetiInitializePackage - Registers the KSP type "fetifeti" in a program that links with the library
+   FetiFetiInitializePackage - Registers "fetifeti" as a type of KSP and of PC in a program that links with the library
 
    Not Collective
 
@@ -144,6 +144,24 @@ PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyIS(KSP ksp, IS bodies);
 PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyLabel(KSP ksp, const char name[]);
 
 /*@
+   KSPFETIFETISetPrimalDofs - Makes unknowns primal where subdomains share them, for a KSP of type "fetifeti"
+
+   Collective
+
+   Input Parameters:
++  ksp  - the KSP
+-  dofs - global numbers of unknowns, listed by any rank; NULL: only those that the solver chooses
+
+   Level: advanced
+
+   Note:
+   The index set is referenced, not copied. As with PCBDDCSetPrimalVerticesIS(), the solver may choose more.
+
+.seealso: `FetiFetiSetPrimalDofs()`
+@*/
+PETSC_EXTERN PetscErrorCode KSPFETIFETISetPrimalDofs(KSP ksp, IS dofs);
+
+/*@
    KSPFETIFETIGetInnerKSP - Gets the KSP that iterates on the multipliers, of a KSP of type "fetifeti"
 
    Not Collective
@@ -159,6 +177,34 @@ PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyLabel(KSP ksp, const char name[]);
 .seealso: `KSPFETIFETISetBody()`
 @*/
 PETSC_EXTERN PetscErrorCode KSPFETIFETIGetInnerKSP(KSP ksp, KSP *inner);
+
+/*@
+   PCFETIFETIGetKSP - Gets the KSP of type "fetifeti" that a PC of type "fetifeti" applies
+
+   Not Collective
+
+   Input Parameter:
+.  pc - the preconditioner
+
+   Output Parameter:
+.  ksp - its KSP, not to be destroyed
+
+   Options Database Keys:
++  -pc_fetifeti_ksp_rtol rtol - each application ends when the jumps between subdomains have fallen by this; 1e-2
+.  -pc_fetifeti_its n         - each application takes n iterations instead
+-  -pc_fetifeti_...           - the options of the method, which a KSP has with -fetifeti_...
+
+   Level: intermediate
+
+   Notes:
+   The KSP is for what has no option: KSPFETIFETISetBody() and its like.
+
+   An application is an iteration: the KSP around the PC must be a flexible one (fgmres, gcr, fcg) unless the tolerance
+   is far below that of the outer KSP.
+
+.seealso: `KSPFETIFETISetBody()`, `KSPFETIFETIGetInnerKSP()`
+@*/
+PETSC_EXTERN PetscErrorCode PCFETIFETIGetKSP(PC pc, KSP *ksp);
 
 /*@
    FetiFetiCreate - Creates a solver

@@ -1,4 +1,4 @@
-/* The bodies of a KSPFETIFETI as the host names them: by rank, by rows, or by a label of the mesh. */
+/* What the host says of a KSPFETIFETI: bodies by rank, by rows, or by a label of the mesh; primal unknowns. */
 #include "kspfetifeti.h"
 #include <petscdmplex.h>
 
@@ -118,6 +118,27 @@ int ff_plugin_set_body_label(KSP ksp, const char *name)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode KSPFETIFETISetPrimalDofs_FETIFETI(KSP ksp, IS dofs)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  if (dofs) PetscCall(PetscObjectReference((PetscObject)dofs));
+  PetscCall(ISDestroy(&ff->primal));
+  ff->primal = dofs;
+  ff->stale  = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_set_primal(KSP ksp, IS dofs)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ksp, KSP_CLASSID, 1);
+  if (dofs) PetscValidHeaderSpecific(dofs, IS_CLASSID, 2);
+  PetscTryMethod((PetscObject)ksp, "KSPFETIFETISetPrimalDofs_C", (KSP, IS), (ksp, dofs));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ff_compose_bodies(KSP ksp)
 {
   PetscFunctionBegin;
@@ -125,6 +146,8 @@ PetscErrorCode ff_compose_bodies(KSP ksp)
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyIS_C", KSPFETIFETISetBodyIS_FETIFETI));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyLabel_C",
                                        KSPFETIFETISetBodyLabel_FETIFETI));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetPrimalDofs_C",
+                                       KSPFETIFETISetPrimalDofs_FETIFETI));
   PetscFunctionReturn(0);
 }
 
@@ -132,8 +155,10 @@ PetscErrorCode ff_forget_bodies(KSP ksp)
 {
   PetscFunctionBegin;
   PetscCall(Forget((KSP_FETIFETI *)ksp->data));
+  PetscCall(ISDestroy(&((KSP_FETIFETI *)ksp->data)->primal));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", NULL));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyIS_C", NULL));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyLabel_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetPrimalDofs_C", NULL));
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,7 @@
 /*
    KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. The method is in
    Rust (src/embed, src/capi). This file has the functions that every KSP type must have; kspbodies.c has the functions
-   for bodies, kspregister.c makes the type known.
+   for bodies, kspregister.c makes the types known, pcfetifeti.c has the PC.
 */
 #include "kspfetifeti.h"
 
@@ -43,6 +43,7 @@ static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
   PetscFunctionBegin;
   wishes->body   = (int)((KSP_FETIFETI *)ksp->data)->body;
   wishes->bodies = ((KSP_FETIFETI *)ksp->data)->bodies;
+  wishes->primal = ((KSP_FETIFETI *)ksp->data)->primal;
   wishes->goal   = -1;
   wishes->rtol   = ksp->rtol;
   wishes->abstol = ksp->abstol;
@@ -162,11 +163,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   ksp->its = 0;
   if (!ff->solver) {
     ksp->reason = ff->failed;
-#if PETSC_VERSION_GE(3, 22, 0)
-    PetscCall(VecFlag(ksp->vec_sol, PETSC_TRUE));
-#else
-    PetscCall(VecSetInf(ksp->vec_sol));
-#endif
+    PetscCall(FFSpoil(ksp->vec_sol));
     PetscFunctionReturn(0);
   }
   PetscCall(KSPGetOperators(ksp, &A, NULL));
@@ -219,11 +216,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscFunctionReturn(0);
 }
 
-#if PETSC_VERSION_GE(3, 23, 0)
-static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems PetscOptionsObject)
-#else
-static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *PetscOptionsObject)
-#endif
+static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, FFOptionItems PetscOptionsObject)
 {
   KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
   char          name[PETSC_MAX_PATH_LEN];

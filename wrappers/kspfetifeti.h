@@ -3,6 +3,7 @@
 #define KSPFETIFETI_H
 
 #include <petsc/private/kspimpl.h>
+#include "petsc-sys/compat.h"
 
 /* The data of a KSP of this type. */
 typedef struct {
@@ -11,6 +12,7 @@ typedef struct {
   PetscObjectState state;
   PetscInt         body;   /* body of this rank; -1: not given */
   IS               bodies; /* body of each row that this rank owns; NULL: not given */
+  IS               primal; /* unknowns that are to be primal; NULL: none are named */
   char            *label;  /* label of the mesh's cells that names the bodies; NULL: none */
   PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
   PetscBool        stale; /* set up again, even if the operator has not changed */
@@ -39,6 +41,7 @@ typedef struct {
 typedef struct {
   int    body;     /* body of this rank, or -1 */
   IS     bodies;   /* body of each row that this rank owns, or NULL */
+  IS     primal;   /* unknowns that are to be primal, listed by any rank, or NULL */
   double goal;     /* norm of b - A x to reach, or -1: no such test */
   double rtol, abstol, divtol;
   int    max_it;
@@ -75,10 +78,15 @@ int ff_processor_suits(void);
 int ff_plugin_set_body(KSP ksp, PetscInt body);
 int ff_plugin_set_body_is(KSP ksp, IS bodies);
 int ff_plugin_set_body_label(KSP ksp, const char *name);
+int ff_plugin_set_primal(KSP ksp, IS dofs);
 int ff_plugin_get_inner(KSP ksp, KSP *inner);
+int ff_plugin_get_ksp(PC pc, KSP *ksp);
 
 /* Creates a KSP of this type (kspfetifeti.c). */
 PetscErrorCode KSPCreate_FETIFETI(KSP ksp);
+
+/* Creates a PC of this type (pcfetifeti.c). */
+PetscErrorCode PCCreate_FETIFETI(PC pc);
 
 /* Bodies (kspbodies.c). */
 PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body);

@@ -1,4 +1,4 @@
-/* Makes the KSP type known to PETSc, if this PETSc is the one that the library was built for. */
+/* Makes the types of KSP and PC known to PETSc, if this PETSc is the one that the library was built for. */
 #include "kspfetifeti.h"
 
 /* The PETSc that runs may be another one than this file was compiled against: nothing here may depend on its types. */
@@ -8,16 +8,20 @@ static PetscErrorCode Suits(void)
   union
   {
     PetscInt64 both;
-    PetscInt   half[2];
+    int        half[2];
   } major = {-1}, minor = {-1};
+  const int     own    = 8 * (int)sizeof(PetscInt);
   PetscDataType scalar = PETSC_DATATYPE_UNKNOWN;
   PetscBool     found;
+  int           bits;
 
   PetscFunctionBegin;
-  PetscCall(PetscGetVersionNumber(major.half, minor.half, NULL, NULL));
-  PetscCheck(major.half[1] == -1, PETSC_COMM_SELF, PETSC_ERR_SUP,
-             "libfetifeti.so was built for a PETSc with 32-bit indices, this one has 64-bit indices: "
-             "load it into a PETSc with 32-bit indices");
+  PetscCall(PetscGetVersionNumber((PetscInt *)major.half, (PetscInt *)minor.half, NULL, NULL));
+  bits = major.half[1] == -1 ? 32 : 64;
+  PetscCheck(bits == own, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for a PETSc with %d-bit indices, this one has %d-bit indices: "
+             "load it into a PETSc with %d-bit indices, or build it again for this one",
+             own, bits, own);
   PetscCheck(major.half[0] == PETSC_VERSION_MAJOR && minor.half[0] == PETSC_VERSION_MINOR, PETSC_COMM_SELF,
              PETSC_ERR_SUP,
              "libfetifeti.so was built for PETSc %d.%d, this is PETSc %d.%d: build it again for this one",
@@ -57,5 +61,6 @@ int ff_plugin_register(int avx2)
   PetscCall((PetscErrorCode)ff_processor(avx2));
   PetscCall(Suits());
   PetscCall(KSPRegister("fetifeti", KSPCreate_FETIFETI));
+  PetscCall(PCRegister("fetifeti", PCCreate_FETIFETI));
   PetscFunctionReturn(0);
 }

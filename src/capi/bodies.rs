@@ -7,14 +7,18 @@ use super::stack::HostMatrix;
 use crate::Result;
 use base::linalg::csr::Csr;
 use base::Fault;
-use petsc::{raw, AttachedNullSpace};
+use petsc::{raw, AttachedNullSpace, PetscInt};
 use std::ffi::c_int;
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetSizes(ff: HandlePointer, local: c_int, global: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetSizes(
+    ff: HandlePointer,
+    local: PetscInt,
+    global: PetscInt,
+) -> c_int {
     alone(ff, c"FetiFetiSetSizes", |o| {
         // PETSC_DECIDE and PETSC_DETERMINE are negative.
-        let size = |n: c_int| usize::try_from(n).ok();
+        let size = |n: PetscInt| usize::try_from(n).ok();
         if size(local).is_none() && size(global).is_none() {
             return Err(Fault::Wrong.error(
                 "neither the local nor the global number of unknowns was given, expected one of them",
@@ -27,7 +31,7 @@ pub unsafe extern "C" fn FetiFetiSetSizes(ff: HandlePointer, local: c_int, globa
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: HandlePointer, bs: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: HandlePointer, bs: PetscInt) -> c_int {
     alone(ff, c"FetiFetiSetBlockSize", |o| {
         if bs < 1 {
             return Err(
@@ -43,12 +47,12 @@ pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: HandlePointer, bs: c_int) -> c
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddSubdomain(
     ff: HandlePointer,
-    body: c_int,
-    n: c_int,
-    ia: *const c_int,
-    ja: *const c_int,
+    body: PetscInt,
+    n: PetscInt,
+    ia: *const PetscInt,
+    ja: *const PetscInt,
     a: *const f64,
-    dofs: *const c_int,
+    dofs: *const PetscInt,
 ) -> c_int {
     alone(ff, c"FetiFetiAddSubdomain", |o| {
         if !o.stack.is_empty() {
@@ -56,7 +60,7 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
         }
         let dofs = array(dofs, n, "dofs")?.to_vec();
         let ia = array(ia, n.saturating_add(1), "ia")?;
-        let nnz = starts(ia)? as c_int;
+        let nnz = starts(ia)? as PetscInt;
         let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
         let k = matrix(n, ia, ja, a)?;
         o.push(HostMatrix {
@@ -71,7 +75,7 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
 }
 
 /// A square matrix from compressed rows; entries at the same place are added up.
-fn matrix(n: c_int, ia: &[c_int], ja: &[c_int], a: &[f64]) -> Result<Csr> {
+fn matrix(n: PetscInt, ia: &[PetscInt], ja: &[PetscInt], a: &[f64]) -> Result<Csr> {
     let mut triplets = Vec::with_capacity(ja.len());
     for (row, range) in ia.windows(2).enumerate() {
         let range = range[0] as usize..range[1] as usize;
@@ -95,15 +99,15 @@ fn matrix(n: c_int, ia: &[c_int], ja: &[c_int], a: &[f64]) -> Result<Csr> {
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiUpdateSubdomain(
     ff: HandlePointer,
-    s: c_int,
-    n: c_int,
-    ia: *const c_int,
-    ja: *const c_int,
+    s: PetscInt,
+    n: PetscInt,
+    ia: *const PetscInt,
+    ja: *const PetscInt,
     a: *const f64,
 ) -> c_int {
     alone(ff, c"FetiFetiUpdateSubdomain", |o| {
         let ia = array(ia, n.saturating_add(1), "ia")?;
-        let nnz = starts(ia)? as c_int;
+        let nnz = starts(ia)? as PetscInt;
         let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
         let k = matrix(n, ia, ja, a)?;
         o.update_subdomain(s, k)
@@ -113,7 +117,7 @@ pub unsafe extern "C" fn FetiFetiUpdateSubdomain(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiUpdateMatrices(
     ff: HandlePointer,
-    n: c_int,
+    n: PetscInt,
     matrices: *const raw::Mat,
 ) -> c_int {
     together(ff, c"FetiFetiUpdateMatrices", |o| {
@@ -133,7 +137,7 @@ pub unsafe extern "C" fn FetiFetiUpdateMatrices(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiSetMatIS(ff: HandlePointer, a: raw::Mat, body: c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiSetMatIS(ff: HandlePointer, a: raw::Mat, body: PetscInt) -> c_int {
     together(ff, c"FetiFetiSetMatIS", |o| {
         o.set_matis(&lent(not_null(a, "Mat")?, &o.session)?, body)
     })
@@ -144,7 +148,7 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
     ff: HandlePointer,
     a: raw::Mat,
     numbers: raw::IS,
-    body: c_int,
+    body: PetscInt,
 ) -> c_int {
     together(ff, c"FetiFetiAddMatIS", |o| {
         let a = lent(not_null(a, "Mat")?, &o.session)?;
@@ -172,8 +176,8 @@ pub unsafe extern "C" fn FetiFetiSetNearNullSpace(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetCoordinates(
     ff: HandlePointer,
-    dim: c_int,
-    n: c_int,
+    dim: PetscInt,
+    n: PetscInt,
     coords: *const f64,
 ) -> c_int {
     alone(ff, c"FetiFetiSetCoordinates", |o| {

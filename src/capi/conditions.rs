@@ -9,7 +9,7 @@ use super::object::Object;
 use super::rows::{law, pairs, HostRow, PairSide, RowOrigin};
 use crate::Result;
 use base::Fault;
-use petsc::raw;
+use petsc::{raw, PetscInt};
 use std::ffi::c_int;
 
 #[no_mangle]
@@ -49,12 +49,12 @@ pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: HandlePointer, dofs: raw::IS)
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactRows(
     ff: HandlePointer,
-    n: c_int,
-    ia: *const c_int,
-    ja: *const c_int,
+    n: PetscInt,
+    ia: *const PetscInt,
+    ja: *const PetscInt,
     b: *const f64,
     gap: *const f64,
-    kind: *const c_int,
+    kind: *const PetscInt,
 ) -> c_int {
     alone(ff, c"FetiFetiSetContactRows", |o| {
         contact_rows(o, n, ia, (None, ja), b, gap, kind)
@@ -65,13 +65,13 @@ pub unsafe extern "C" fn FetiFetiSetContactRows(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactRowsByMatrix(
     ff: HandlePointer,
-    n: c_int,
-    ia: *const c_int,
-    matrix: *const c_int,
-    ja: *const c_int,
+    n: PetscInt,
+    ia: *const PetscInt,
+    matrix: *const PetscInt,
+    ja: *const PetscInt,
     b: *const f64,
     gap: *const f64,
-    kind: *const c_int,
+    kind: *const PetscInt,
 ) -> c_int {
     alone(ff, c"FetiFetiSetContactRowsByMatrix", |o| {
         contact_rows(o, n, ia, (Some(matrix), ja), b, gap, kind)
@@ -81,18 +81,18 @@ pub unsafe extern "C" fn FetiFetiSetContactRowsByMatrix(
 /// Replaces the rows of this rank. Columns are numbers of all unknowns, or those of a matrix for each term.
 fn contact_rows(
     o: &mut Object,
-    n: c_int,
-    ia: *const c_int,
-    (matrix, ja): (Option<*const c_int>, *const c_int),
+    n: PetscInt,
+    ia: *const PetscInt,
+    (matrix, ja): (Option<*const PetscInt>, *const PetscInt),
     b: *const f64,
     gap: *const f64,
-    kind: *const c_int,
+    kind: *const PetscInt,
 ) -> Result<()> {
     let mut rows = Vec::new();
     if n != 0 {
         let (gap, kind) = (array(gap, n, "gap")?, array(kind, n, "kind")?);
         let ia = array(ia, n.saturating_add(1), "ia")?;
-        let nnz = starts(ia)? as c_int;
+        let nnz = starts(ia)? as PetscInt;
         let (ja, b) = (array(ja, nnz, "ja")?, array(b, nnz, "b")?);
         let matrix = matrix.map(|list| array(list, nnz, "matrix")).transpose()?;
         for r in 0..n as usize {
@@ -112,7 +112,7 @@ fn contact_rows(
 }
 
 /// The unknown of a term of row `r`: number `dof` of matrix `whose`, or of all unknowns where that is negative.
-fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(HostNumbering, u32)> {
+fn column(o: &Object, r: usize, whose: PetscInt, dof: PetscInt) -> Result<(HostNumbering, u32)> {
     let (numbering, n) = match usize::try_from(whose) {
         Err(_) => (HostNumbering::All, None),
         Ok(k) => (
@@ -137,7 +137,7 @@ fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(HostNumberi
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactGaps(
     ff: HandlePointer,
-    n: c_int,
+    n: PetscInt,
     gap: *const f64,
 ) -> c_int {
     alone(ff, c"FetiFetiSetContactGaps", |o| {
@@ -166,7 +166,7 @@ fn contact_row(
     r: usize,
     mut terms: Vec<(HostNumbering, u32, f64)>,
     gap: f64,
-    number: c_int,
+    number: PetscInt,
 ) -> Result<HostRow> {
     terms.retain(|t| t.2 != 0.0);
     if terms.is_empty() || terms.iter().any(|t| !t.2.is_finite()) || !gap.is_finite() {
@@ -181,12 +181,12 @@ fn contact_row(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactPairs(
     ff: HandlePointer,
-    a: c_int,
+    a: PetscInt,
     first: raw::IS,
-    b: c_int,
+    b: PetscInt,
     second: raw::IS,
     gap: *const f64,
-    kind: c_int,
+    kind: PetscInt,
 ) -> c_int {
     together(ff, c"FetiFetiSetContactPairs", |o| {
         if first.is_null() && second.is_null() {
@@ -205,15 +205,15 @@ pub unsafe extern "C" fn FetiFetiSetContactPairs(
 /// The rows of pairs of unknowns (matrix, numbers).
 fn contact_pairs(
     o: &Object,
-    first: (c_int, raw::IS),
-    second: (c_int, raw::IS),
+    first: (PetscInt, raw::IS),
+    second: (PetscInt, raw::IS),
     gap: *const f64,
-    kind: c_int,
+    kind: PetscInt,
 ) -> Result<Vec<HostRow>> {
     let law = law(kind, || "contact pairs are".into())?;
     let first = PairSide::new(o, first.0, list(o, not_null(first.1, "first IS")?)?)?;
     let second = PairSide::new(o, second.0, list(o, not_null(second.1, "second IS")?)?)?;
-    let gap = optional(gap, first.dofs.len() as c_int, "gap")?;
+    let gap = optional(gap, first.dofs.len() as PetscInt, "gap")?;
     pairs(
         o.session.rank(),
         &first,

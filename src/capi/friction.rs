@@ -9,12 +9,13 @@ use super::surfaces::{at_place, solved_mortar};
 use crate::Result;
 use base::Fault;
 use parallel::exchange::gather_all;
+use petsc::PetscInt;
 use std::ffi::c_int;
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactLaw(
     ff: HandlePointer,
-    n: c_int,
+    n: PetscInt,
     friction: *const f64,
     limit: *const f64,
     tresca: *const f64,
@@ -56,8 +57,8 @@ pub unsafe extern "C" fn FetiFetiSetContactLaw(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetContactSlip(
     ff: HandlePointer,
-    n: c_int,
-    dim: c_int,
+    n: PetscInt,
+    dim: PetscInt,
     slip: *const f64,
 ) -> c_int {
     alone(ff, c"FetiFetiSetContactSlip", |o| {
@@ -106,11 +107,11 @@ pub unsafe extern "C" fn FetiFetiNextContactStep(ff: HandlePointer) -> c_int {
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetContactFriction(
     ff: HandlePointer,
-    n: c_int,
-    dim: c_int,
+    n: PetscInt,
+    dim: PetscInt,
     force: *mut f64,
     slip: *mut f64,
-    state: *mut c_int,
+    state: *mut PetscInt,
 ) -> c_int {
     alone(ff, c"FetiFetiGetContactFriction", |o| {
         o.outcome()?;
@@ -130,7 +131,7 @@ pub unsafe extern "C" fn FetiFetiGetContactFriction(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetMortarLaw(
     ff: HandlePointer,
-    mortar: c_int,
+    mortar: PetscInt,
     friction: f64,
     limit: f64,
     tresca: f64,
@@ -164,8 +165,8 @@ pub unsafe extern "C" fn FetiFetiSetMortarLaw(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiSetMortarSlip(
     ff: HandlePointer,
-    mortar: c_int,
-    n: c_int,
+    mortar: PetscInt,
+    n: PetscInt,
     slip: *const f64,
 ) -> c_int {
     together(ff, c"FetiFetiSetMortarSlip", |o| {
@@ -179,7 +180,7 @@ pub unsafe extern "C" fn FetiFetiSetMortarSlip(
                     surface.mine.len()
                 )));
             }
-            let all = n.saturating_mul(surface.components as c_int);
+            let all = n.saturating_mul(surface.components as PetscInt);
             let slip = optional(slip, all, "slip")?.unwrap_or_default();
             match slip.iter().find(|v| !v.is_finite()) {
                 None => Ok((m, slip.to_vec())),
@@ -199,8 +200,8 @@ pub unsafe extern "C" fn FetiFetiSetMortarSlip(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetMortarFriction(
     ff: HandlePointer,
-    mortar: c_int,
-    n: c_int,
+    mortar: PetscInt,
+    n: PetscInt,
     force: *mut f64,
     shear: *mut f64,
     slip: *mut f64,
@@ -229,7 +230,7 @@ pub unsafe extern "C" fn FetiFetiGetMortarFriction(
 ///
 /// # Errors
 /// A mortar that there is not.
-fn added(o: &Object, mortar: c_int) -> Result<usize> {
+fn added(o: &Object, mortar: PetscInt) -> Result<usize> {
     let found = usize::try_from(mortar).ok();
     let found = found.filter(|&m| m < o.mortars.len());
     found.ok_or_else(|| {
@@ -244,7 +245,7 @@ fn added(o: &Object, mortar: c_int) -> Result<usize> {
 ///
 /// # Errors
 /// A mortar that there is not, a tie, scalars; and those of [`ContactLaw::new`].
-fn mortar_law(o: &Object, mortar: c_int, given: &GivenLaw) -> Result<(usize, ContactLaw)> {
+fn mortar_law(o: &Object, mortar: PetscInt, given: &GivenLaw) -> Result<(usize, ContactLaw)> {
     let m = added(o, mortar)?;
     let whose = || format!("mortar {m}");
     let law = ContactLaw::new(given, &whose)?;
@@ -257,7 +258,7 @@ fn mortar_law(o: &Object, mortar: c_int, given: &GivenLaw) -> Result<(usize, Con
     Ok((m, law))
 }
 
-fn as_many_as_rows(o: &Object, n: c_int, what: &str) -> Result<()> {
+fn as_many_as_rows(o: &Object, n: PetscInt, what: &str) -> Result<()> {
     if n as usize == o.rows.len() {
         return Ok(());
     }
@@ -268,7 +269,7 @@ fn as_many_as_rows(o: &Object, n: c_int, what: &str) -> Result<()> {
 }
 
 /// The number of components of vectors at rows.
-fn components(o: &Object, dim: c_int) -> Result<usize> {
+fn components(o: &Object, dim: PetscInt) -> Result<usize> {
     let expected = o.nodes();
     if dim as usize == expected && expected <= 3 {
         return Ok(expected);

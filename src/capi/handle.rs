@@ -5,7 +5,7 @@ use super::error::{classified, raise};
 use super::object::Object;
 use crate::Result;
 use base::Fault;
-use petsc::{raw, Session};
+use petsc::{raw, PetscInt, Session};
 use std::ffi::{c_int, CStr};
 use std::ptr::null_mut;
 
@@ -135,7 +135,7 @@ pub fn alone<T: Held>(
 }
 
 /// A C array as a slice.
-pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [T]> {
+pub(super) fn array<'a, T>(data: *const T, n: PetscInt, what: &str) -> Result<&'a [T]> {
     let n = usize::try_from(n).map_err(|_| {
         Fault::OutOfRange.error(format!("the length of {what} is {n}, expected at least 0"))
     })?;
@@ -150,7 +150,7 @@ pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [
 }
 
 /// A C array as a slice; `None` for NULL.
-pub(super) fn optional<'a, T>(data: *const T, n: c_int, what: &str) -> Result<Option<&'a [T]>> {
+pub(super) fn optional<'a, T>(data: *const T, n: PetscInt, what: &str) -> Result<Option<&'a [T]>> {
     if data.is_null() {
         return Ok(None);
     }
@@ -175,7 +175,7 @@ pub(super) fn not_null<T>(object: *mut T, what: &str) -> Result<*mut T> {
 }
 
 /// Checks the row pointers of a CSR array; returns the number of entries.
-pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
+pub(super) fn starts(ia: &[PetscInt]) -> Result<usize> {
     let bad = ia.windows(2).position(|w| w[1] < w[0]);
     match (ia.first(), bad) {
         (Some(&first), _) if first != 0 => {
@@ -191,7 +191,7 @@ pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
 }
 
 /// The numbers of an index set; empty for NULL.
-pub fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
+pub fn list(o: &Object, is: raw::IS) -> Result<Vec<PetscInt>> {
     if is.is_null() {
         Ok(Vec::new())
     } else {

@@ -41,10 +41,12 @@ extern "C" {
     fn ff_plugin_register(avx2: c_int) -> c_int;
     fn ff_processor(avx2: c_int) -> c_int;
     fn ff_processor_suits() -> c_int;
-    fn ff_plugin_set_body(ksp: raw::KSP, body: c_int) -> c_int;
+    fn ff_plugin_set_body(ksp: raw::KSP, body: raw::PetscInt) -> c_int;
     fn ff_plugin_set_body_is(ksp: raw::KSP, bodies: raw::IS) -> c_int;
     fn ff_plugin_set_body_label(ksp: raw::KSP, name: *const c_char) -> c_int;
+    fn ff_plugin_set_primal(ksp: raw::KSP, dofs: raw::IS) -> c_int;
     fn ff_plugin_get_inner(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int;
+    fn ff_plugin_get_ksp(pc: raw::PC, ksp: *mut raw::KSP) -> c_int;
 }
 
 /// Whether this build has instructions of processors with AVX2 and FMA (.cargo/config.toml). What runs before the
@@ -63,14 +65,16 @@ pub fn suits() -> bool {
     AVX2 == 0 || unsafe { ff_processor_suits() } != 0
 }
 
-/// Called by PETSc when it loads the library (`-dll_append /path/libfetifeti.so`): registers the KSP type "fetifeti".
+/// Called by PETSc when it loads the library (`-dll_append /path/libfetifeti.so`): registers "fetifeti" as a type of
+/// KSP and of PC.
 #[no_mangle]
 pub extern "C" fn PetscDLLibraryRegister_fetifeti() -> c_int {
     // SAFETY: PETSc is initialised, or it would not load libraries.
     unsafe { ff_plugin_register(AVX2) }
 }
 
-/// Registers the KSP type "fetifeti" for programs that link with the library: they call it once after PetscInitialize.
+/// Registers "fetifeti" as a type of KSP and of PC for programs that link with the library: they call it once after
+/// PetscInitialize.
 #[no_mangle]
 pub extern "C" fn FetiFetiInitializePackage() -> c_int {
     // SAFETY: the caller has initialised PETSc.
@@ -83,7 +87,7 @@ pub extern "C" fn FetiFetiInitializePackage() -> c_int {
 /// # Safety
 /// `ksp` is a KSP.
 #[no_mangle]
-pub unsafe extern "C" fn KSPFETIFETISetBody(ksp: raw::KSP, body: c_int) -> c_int {
+pub unsafe extern "C" fn KSPFETIFETISetBody(ksp: raw::KSP, body: raw::PetscInt) -> c_int {
     // SAFETY: handed on.
     unsafe { ff_plugin_set_body(ksp, body) }
 }
@@ -110,6 +114,17 @@ pub unsafe extern "C" fn KSPFETIFETISetBodyLabel(ksp: raw::KSP, name: *const c_c
     unsafe { ff_plugin_set_body_label(ksp, name) }
 }
 
+/// Makes unknowns primal where subdomains of one body share them; any rank may list any, and NULL names none. Takes
+/// effect at the next set-up; other types of KSP ignore it.
+///
+/// # Safety
+/// `ksp` is a KSP, `dofs` NULL or an index set.
+#[no_mangle]
+pub unsafe extern "C" fn KSPFETIFETISetPrimalDofs(ksp: raw::KSP, dofs: raw::IS) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_set_primal(ksp, dofs) }
+}
+
 /// The KSP that iterates on the multipliers, after KSPSetUp.
 ///
 /// # Safety
@@ -118,4 +133,14 @@ pub unsafe extern "C" fn KSPFETIFETISetBodyLabel(ksp: raw::KSP, name: *const c_c
 pub unsafe extern "C" fn KSPFETIFETIGetInnerKSP(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int {
     // SAFETY: handed on.
     unsafe { ff_plugin_get_inner(ksp, inner) }
+}
+
+/// The KSP of a PC, which is of type fetifeti, too: for its bodies and tolerances.
+///
+/// # Safety
+/// `pc` is a PC of type fetifeti, and `ksp` can be written to.
+#[no_mangle]
+pub unsafe extern "C" fn PCFETIFETIGetKSP(pc: raw::PC, ksp: *mut raw::KSP) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_get_ksp(pc, ksp) }
 }

@@ -2,18 +2,18 @@
 
 use crate::contact::Step;
 use crate::{Error, Result};
-use petsc::Session;
+use petsc::{PetscInt, Session};
 use std::ffi::{c_int, c_void};
 
 /// FetiFetiContactStep of `wrappers/fetifeti.h`.
 #[repr(C)]
 pub struct ContactStep {
-    step: c_int,
-    active: c_int,
-    entered: c_int,
-    left: c_int,
-    wrong: c_int,
-    iterations: c_int,
+    step: PetscInt,
+    active: PetscInt,
+    entered: PetscInt,
+    left: PetscInt,
+    wrong: PetscInt,
+    iterations: PetscInt,
     residual: f64,
     tolerance: f64,
 }
@@ -40,12 +40,12 @@ impl Monitor {
     /// The function returned an error on some rank.
     pub fn call(&self, session: &Session, step: usize, what: &Step) -> Result<()> {
         let told = ContactStep {
-            step: step as c_int,
-            active: what.active as c_int,
-            entered: what.entered as c_int,
-            left: what.left as c_int,
-            wrong: what.wrong as c_int,
-            iterations: what.iterations as c_int,
+            step: step as PetscInt,
+            active: what.active as PetscInt,
+            entered: what.entered as PetscInt,
+            left: what.left as PetscInt,
+            wrong: what.wrong as PetscInt,
+            iterations: what.iterations as PetscInt,
             residual: what.residual,
             tolerance: what.tolerance,
         };

@@ -11,12 +11,12 @@ use bytemuck::{bytes_of, Pod, Zeroable};
 use elements::mortar::{self, reach, MortarSample, MortarSide};
 use parallel::exchange::gather_all;
 use parallel::parcels::Parcels;
-use petsc::Session;
+use petsc::{PetscInt, Session};
 
 /// The data that one rank gives for a pair of surfaces.
 pub struct GivenMortar<'a> {
     /// Numbers of the surfaces; the first one carries the multipliers.
-    pub surfaces: [i32; 2],
+    pub surfaces: [PetscInt; 2],
     pub law: Law,
     /// How far apart they may be; 0 or less: a few edges.
     pub reach: f64,
@@ -27,7 +27,7 @@ pub struct GivenMortar<'a> {
     /// More of it at the nodes that this rank gave of the first surface; or empty.
     pub gaps: &'a [f64],
     /// Which of these nodes are to carry no multiplier; or empty.
-    pub without: &'a [i32],
+    pub without: &'a [PetscInt],
 }
 
 /// A pair of surfaces, on all ranks.
@@ -57,7 +57,7 @@ impl HostSurfaces<'_> {
     ///
     /// # Errors
     /// A number that there is not.
-    fn surface(&self, number: i32) -> Result<&HostSurface> {
+    fn surface(&self, number: PetscInt) -> Result<&HostSurface> {
         let found = usize::try_from(number).ok().and_then(|k| self.list.get(k));
         found.ok_or_else(|| {
             Fault::OutOfRange.error(format!(
@@ -217,7 +217,7 @@ pub fn slips(
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct MortarFacts {
-    surfaces: [i32; 2],
+    surfaces: [PetscInt; 2],
     law: SentLaw,
     reach: f64,
     adjust: f64,

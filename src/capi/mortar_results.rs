@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::tangential::ContactResult;
+use super::tangential::{ContactResult, RowState};
 use crate::embed::GivenResults;
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
@@ -37,8 +37,8 @@ pub type AtNodes = BTreeMap<(usize, u32, usize), NodeResult>;
 struct SentResult {
     mortar: usize,
     component: usize,
-    node: u32,
-    state: i32,
+    node: u64,
+    state: i64,
     multiplier: f64,
     area: f64,
     gap: f64,
@@ -57,8 +57,8 @@ pub fn at_nodes(
     let sent = rows.map(|((at, contact), k)| SentResult {
         mortar: at.mortar,
         component: at.component,
-        node: at.node,
-        state: contact.state,
+        node: at.node.into(),
+        state: contact.state as i64,
         multiplier: given.multipliers[k],
         area: at.area,
         gap: given.gaps[k],
@@ -74,10 +74,10 @@ pub fn at_nodes(
             contact: ContactResult {
                 force: w.force,
                 slip: w.slip,
-                state: w.state,
+                state: w.state as RowState,
             },
         };
-        ((w.mortar, w.node, w.component), at)
+        ((w.mortar, w.node as u32, w.component), at)
     };
     all.into_iter().map(one).collect()
 }

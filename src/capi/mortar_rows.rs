@@ -1,5 +1,6 @@
 //! The rows of all mortars.
 
+use petsc::PetscInt;
 use std::collections::{HashMap, HashSet};
 
 use super::mortar::HostMortar;
@@ -131,13 +132,13 @@ impl Object {
 
     /// The numbers among all unknowns of the nodes of a surface.
     fn numbers(&self, surface: &HostSurface) -> Result<NodeUnknowns> {
-        let number = |&dof: &i32| {
+        let number = |&dof: &PetscInt| {
             let Ok(dof) = u32::try_from(dof) else {
                 return Ok(None);
             };
             self.number(surface.numbering, dof, "surface").map(Some)
         };
-        let node = |dofs: &Vec<i32>| dofs.iter().map(number).collect();
+        let node = |dofs: &Vec<PetscInt>| dofs.iter().map(number).collect();
         surface.dofs.iter().map(node).collect()
     }
 

@@ -11,14 +11,13 @@ use super::rows::HostRow;
 use super::stack::{fits, HostMatrix, LocalMatrix, Stack, StackStates};
 use super::surface::HostSurface;
 use super::tangential::{FrictionCounts, TangentialRow};
-use crate::embed::torn::spanned;
+use crate::embed::torn::{countable, marked, spanned};
 use crate::embed::{Embedded, EmbeddedResult, GivenRows, SetUpWork, Torn};
 use crate::{Error, Result};
 use base::Fault;
-use parallel::exchange::{exchange, highest};
+use parallel::exchange::highest;
 use parallel::halo::Halo;
-use parallel::owners::Owners;
-use petsc::{AttachedNullSpace, Mat, Options, Session, Vec as PetscVec};
+use petsc::{AttachedNullSpace, Mat, Options, PetscInt, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// The data of a `FetiFeti`.
@@ -39,9 +38,9 @@ pub struct Object {
     pub block_size_of_added: usize,
     pub near: Option<AttachedNullSpace>,
     pub coordinates: Option<Coordinates>,
-    pub held: Vec<i32>,
+    pub held: Vec<PetscInt>,
     pub held_values: Option<PetscVec>,
-    pub primal: Vec<i32>,
+    pub primal: Vec<PetscInt>,
     /// The rows that this rank gives, in their order.
     pub rows: Vec<HostRow>,
     pub surfaces: Vec<HostSurface>,
@@ -122,7 +121,7 @@ impl Object {
     }
 
     /// Replaces all subdomains by the local matrices of a MATIS of all unknowns. Collective.
-    pub fn set_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
+    pub fn set_matis(&mut self, a: &Mat, body: PetscInt) -> Result<()> {
         let local = LocalMatrix::of(&self.session, a, body)?;
         self.stack.clear();
         self.subdomains.clear();
@@ -132,7 +131,7 @@ impl Object {
     }
 
     /// Appends the unknowns of a MATIS after those of the previous matrices. Collective.
-    pub fn stack_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
+    pub fn stack_matis(&mut self, a: &Mat, body: PetscInt) -> Result<()> {
         let others = !self.subdomains.is_empty() || self.matis.is_some();
         let others = others.then(|| self.mixed()).map_or(Ok(()), Err);
         self.session.agree(others)?;
@@ -143,7 +142,7 @@ impl Object {
     }
 
     /// Adds the local matrices of a MATIS; `numbers` has the unknown of each row that this rank owns. Collective.
-    pub fn add_matis(&mut self, a: &Mat, numbers: &[i32], body: i32) -> Result<()> {
+    pub fn add_matis(&mut self, a: &Mat, numbers: &[PetscInt], body: PetscInt) -> Result<()> {
         if !self.stack.is_empty() {
             return Err(self.mixed());
         }
@@ -172,7 +171,12 @@ impl Object {
 
     /// Maps each owned entry in `dofs` to its number in `numbers`, which has one for every owned entry of vectors like
     /// `layout`. Negative entries stay. Collective.
-    fn renumbered(&self, layout: &PetscVec, dofs: &[i32], numbers: &[i32]) -> Result<Vec<i32>> {
+    fn renumbered(
+        &self,
+        layout: &PetscVec,
+        dofs: &[PetscInt],
+        numbers: &[PetscInt],
+    ) -> Result<Vec<PetscInt>> {
         let n = layout.local_len();
         let wrong = (numbers.len() != n).then(|| {
             Fault::Sizes.error(format!(
@@ -184,14 +188,14 @@ impl Object {
         self.session.agree(wrong.map_or(Ok(()), Err))?;
         let new = layout.duplicate()?;
         for (to, &number) in new.array_mut()?.iter_mut().zip(numbers) {
-            *to = f64::from(number);
+            *to = number as f64;
         }
         let ghosts: Vec<u32> = dofs.iter().map(|&d| d.max(0) as u32).collect();
         let mut values = vec![0.0; ghosts.len()];
         Halo::new(&self.session, layout, &ghosts)?.fetch(&new, &mut values)?;
         let pairs = dofs.iter().zip(values);
         Ok(pairs
-            .map(|(&d, v)| if d < 0 { d } else { v as i32 })
+            .map(|(&d, v)| if d < 0 { d } else { v as PetscInt })
             .collect())
     }
 
@@ -200,6 +204,7 @@ impl Object {
         let session = &self.session;
         let layout = self.vector()?;
         let n_global = layout.global_len();
+        countable(n_global)?;
         let bs = self.nodes();
         if n_global % bs != 0 {
             return Err(Fault::Sizes.error(format!(
@@ -221,8 +226,8 @@ impl Object {
             named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;
-        torn.held = self.marked(&torn.layout, &self.held, &ghosts, &halo)?;
-        torn.primal = self.marked(&torn.layout, &self.primal, &ghosts, &halo)?;
+        torn.held = marked(session, &torn.layout, &self.held, (&ghosts, &halo))?;
+        torn.primal = marked(session, &torn.layout, &self.primal, (&ghosts, &halo))?;
         Ok(torn)
     }
 
@@ -298,13 +303,13 @@ impl Object {
             return told.layout.duplicate();
         }
         let dofs = self.subdomains.iter().flat_map(|s| &s.dofs);
-        let n = dofs.max().map_or(0.0, |&d| f64::from(d) + 1.0);
+        let n = dofs.max().map_or(0.0, |&d| d as f64 + 1.0);
         let n = highest(self.session.comm(), n);
         PetscVec::over_ranks(&self.session, None, Some(n as usize))
     }
 
     fn in_range(&self, n: usize) -> Result<()> {
-        let out = |dof: &&i32| **dof >= n as i32;
+        let out = |dof: &&PetscInt| **dof >= n as PetscInt;
         for (s, sub) in self.subdomains.iter().enumerate() {
             if let Some(dof) = sub.dofs.iter().find(out) {
                 return Err(Fault::OutOfRange.error(format!(
@@ -314,41 +319,12 @@ impl Object {
             }
         }
         for (what, list) in [("held", &self.held), ("primal", &self.primal)] {
-            if let Some(dof) = list.iter().find(|d| **d < 0 || **d >= n as i32) {
+            if let Some(dof) = list.iter().find(|d| **d < 0 || **d >= n as PetscInt) {
                 return Err(Fault::OutOfRange.error(format!(
                     "unknown {dof} is to be {what}, expected numbers from 0 to below {n}"
                 )));
             }
         }
         Ok(())
-    }
-
-    /// The entries of `ghosts` that some rank lists. Collective.
-    fn marked(
-        &self,
-        layout: &PetscVec,
-        list: &[i32],
-        ghosts: &[u32],
-        halo: &Halo,
-    ) -> Result<HashSet<u32>> {
-        let marks = layout.duplicate()?;
-        marks.set(0.0)?;
-        let comm = self.session.comm();
-        let range = marks.ownership_range();
-        let owners = Owners::new(comm, range.start);
-        let mut outgoing = vec![Vec::new(); self.session.size()];
-        for &dof in list {
-            outgoing[owners.of(dof as u64)].push(dof as usize);
-        }
-        {
-            let mut entries = marks.array_mut()?;
-            for dof in exchange(comm, outgoing) {
-                entries[dof - range.start] = 1.0;
-            }
-        }
-        let mut values = vec![0.0; ghosts.len()];
-        halo.fetch(&marks, &mut values)?;
-        let marked = ghosts.iter().zip(values).filter(|(_, v)| *v != 0.0);
-        Ok(marked.map(|(&d, _)| d).collect())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::error::{remark, status, UNFIT};
 use super::handle::lent;
+use crate::embed::torn::marked;
 use crate::embed::{Embedded, Local, SetUp, SetUpWork, Torn};
 use crate::feti::krylov::solve::JudgeTiming;
 use crate::settings::MethodSettings;
@@ -18,6 +19,7 @@ use std::ffi::{c_char, c_int, c_void, CStr};
 pub struct Wishes {
     body: c_int,
     bodies: raw::IS,
+    primal: raw::IS,
     goal: f64,
     rtol: f64,
     abstol: f64,
@@ -160,6 +162,18 @@ fn whole(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
             &lent(wishes.bodies, session)?,
         )?);
     }
+    if !wishes.primal.is_null() {
+        let list = lent(wishes.primal, session)?.indices()?;
+        let n = torn.n_global as raw::PetscInt;
+        let wrong = list.iter().find(|dof| !(0..n).contains(*dof));
+        session.agree(wrong.map_or(Ok(()), |dof| {
+            Err(Error::input(format!(
+                "unknown {dof} is to be primal, expected numbers from 0 to below {n}"
+            )))
+        }))?;
+        let (ghosts, halo) = torn.halo(session)?;
+        torn.primal = marked(session, &torn.layout, &list, (&ghosts, &halo))?;
+    }
     Embedded::new(session, &torn, bodies, settings)
 }
 
@@ -178,7 +192,7 @@ fn numbers(session: &Session, layout: &PetscVec, is: &Is) -> Result<PetscVec> {
     })?;
     let vector = layout.duplicate()?;
     for (to, from) in vector.array_mut()?.iter_mut().zip(found) {
-        *to = f64::from(from);
+        *to = from as f64;
     }
     Ok(vector)
 }
@@ -266,7 +280,7 @@ fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     let f64_of = |name, outer| Ok::<f64, Error>(options.get_f64(name)?.unwrap_or(outer));
     let max_it = match options.get_usize("ksp_max_it")? {
         Some(_) => now.3,
-        None => wishes.max_it.max(0),
+        None => wishes.max_it.max(0) as raw::PetscInt,
     };
     ksp.set_tolerances(
         Some(f64_of("ksp_rtol", wishes.rtol)?),

@@ -2,13 +2,13 @@
 
 use super::handle::{alone, put, HandlePointer};
 use base::Fault;
-use petsc::raw;
+use petsc::{raw, PetscInt};
 use std::ffi::c_int;
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetIterations(ff: HandlePointer, its: *mut c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetIterations(ff: HandlePointer, its: *mut PetscInt) -> c_int {
     alone(ff, c"FetiFetiGetIterations", |o| {
-        put(its, o.outcome()?.iterations as c_int);
+        put(its, o.outcome()?.iterations as PetscInt);
         Ok(())
     })
 }
@@ -25,9 +25,9 @@ pub unsafe extern "C" fn FetiFetiGetConvergedReason(
 }
 
 #[no_mangle]
-pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: HandlePointer, steps: *mut c_int) -> c_int {
+pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: HandlePointer, steps: *mut PetscInt) -> c_int {
     alone(ff, c"FetiFetiGetContactSteps", |o| {
-        put(steps, o.outcome()?.steps as c_int);
+        put(steps, o.outcome()?.steps as PetscInt);
         Ok(())
     })
 }
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn FetiFetiGetKKT(ff: HandlePointer, kkt: *mut f64) -> c_i
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetMultipliers(
     ff: HandlePointer,
-    n: c_int,
+    n: PetscInt,
     lambda: *mut f64,
 ) -> c_int {
     alone(ff, c"FetiFetiGetMultipliers", |o| {

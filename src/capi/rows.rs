@@ -8,6 +8,7 @@ use crate::embed::GivenRow;
 use crate::substructures::Law;
 use crate::Result;
 use base::Fault;
+use petsc::PetscInt;
 
 /// The function that gave a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +55,7 @@ impl HostRow {
 }
 
 /// The law of a C FetiFetiRowKind.
-pub fn law(number: i32, whose: impl FnOnce() -> String) -> Result<Law> {
+pub fn law(number: PetscInt, whose: impl FnOnce() -> String) -> Result<Law> {
     let found = u64::try_from(number).ok().and_then(Law::of_kind);
     let found = found.filter(|law| !law.is_friction());
     found.ok_or_else(|| {
@@ -68,7 +69,7 @@ pub fn law(number: i32, whose: impl FnOnce() -> String) -> Result<Law> {
 /// The unknowns on one side of the pairs, and their numbering.
 pub struct PairSide {
     pub numbering: HostNumbering,
-    pub dofs: Vec<i32>,
+    pub dofs: Vec<PetscInt>,
 }
 
 impl PairSide {
@@ -76,7 +77,7 @@ impl PairSide {
     ///
     /// # Errors
     /// A matrix that does not exist, or a number that it does not have.
-    pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<PairSide> {
+    pub fn new(o: &Object, matrix: PetscInt, dofs: Vec<PetscInt>) -> Result<PairSide> {
         let (numbering, n) = match usize::try_from(matrix) {
             Err(_) => (HostNumbering::All, None),
             Ok(k) => (
@@ -84,7 +85,7 @@ impl PairSide {
                 Some(o.size_of(k, "contact pairs name")?),
             ),
         };
-        let wrong = |d: &&i32| **d < 0 || n.is_some_and(|n| **d as usize >= n);
+        let wrong = |d: &&PetscInt| **d < 0 || n.is_some_and(|n| **d as usize >= n);
         if let Some((r, dof)) = dofs.iter().enumerate().find(|(_, d)| wrong(d)) {
             let expected = match n {
                 Some(n) => format!("numbers from 0 to below {n}, those of matrix {matrix}"),

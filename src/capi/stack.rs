@@ -12,25 +12,25 @@ use crate::Result;
 use base::linalg::csr::Csr;
 use base::Fault;
 use parallel::exchange::gather_all;
-use petsc::{Mat, Session, Vec as PetscVec};
+use petsc::{Mat, PetscInt, Session, Vec as PetscVec};
 
 /// A subdomain matrix from the host.
 pub struct HostMatrix {
     /// The matrix in the host's order of rows and columns.
     pub k: Csr,
     /// Global number of each row; negative: the row has none.
-    pub dofs: Vec<i32>,
+    pub dofs: Vec<PetscInt>,
     /// The block size if a dof may be listed several times, once for each subdomain that has it.
     pub copies: Option<usize>,
     /// The body; negative: not given.
-    pub body: i32,
+    pub body: PetscInt,
     /// The numbers of the rows in the matrix that they come from; `None` for arrays.
-    pub map: Option<Vec<i32>>,
+    pub map: Option<Vec<PetscInt>>,
 }
 
 impl HostMatrix {
     /// The matrix as it is compared with what was set up, with these numbers of its rows.
-    pub fn locals<'a>(&'a self, dofs: Cow<'a, [i32]>, block_size: usize) -> Vec<Local<'a>> {
+    pub fn locals<'a>(&'a self, dofs: Cow<'a, [PetscInt]>, block_size: usize) -> Vec<Local<'a>> {
         if self.copies.is_none() {
             return vec![Local {
                 k: Cow::Borrowed(&self.k),
@@ -38,7 +38,7 @@ impl HostMatrix {
             }];
         }
         let local = |piece: TornPiece| Local {
-            dofs: piece.dofs.iter().map(|&d| d as i32).collect(),
+            dofs: piece.dofs.iter().map(|&d| d as PetscInt).collect(),
             k: Cow::Owned(piece.k),
         };
         self.pieces(&dofs, block_size)
@@ -48,7 +48,7 @@ impl HostMatrix {
     }
 
     /// The pieces of the matrix, with these numbers of its rows.
-    pub fn pieces(&self, dofs: &[i32], block_size: usize) -> Vec<TornPiece> {
+    pub fn pieces(&self, dofs: &[PetscInt], block_size: usize) -> Vec<TornPiece> {
         let body = u64::try_from(self.body).ok();
         torn_from(&self.k, dofs, block_size, self.copies, body)
     }
@@ -84,7 +84,7 @@ pub struct LocalMatrix {
 
 impl LocalMatrix {
     /// Extracts the local data of the matrix. Collective.
-    pub fn of(session: &Session, a: &Mat, body: i32) -> Result<LocalMatrix> {
+    pub fn of(session: &Session, a: &Mat, body: PetscInt) -> Result<LocalMatrix> {
         unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
         let (rows, cols) = a.size()?;
         if rows != cols {
@@ -205,9 +205,9 @@ impl Stack {
     }
 
     /// The local matrices with the numbers of all unknowns.
-    fn numbered(&self) -> Vec<(&HostMatrix, Vec<i32>)> {
-        let number = |k: usize, d: i32| match u32::try_from(d) {
-            Ok(dof) => self.number(k, dof) as i32,
+    fn numbered(&self) -> Vec<(&HostMatrix, Vec<PetscInt>)> {
+        let number = |k: usize, d: PetscInt| match u32::try_from(d) {
+            Ok(dof) => self.number(k, dof) as PetscInt,
             Err(_) => d,
         };
         let mut out = Vec::new();

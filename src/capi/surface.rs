@@ -13,7 +13,7 @@ use base::Fault;
 use elements::mortar::{one_way, MortarFace, MortarSide};
 use parallel::exchange::gather_all;
 use parallel::parcels::Parcels;
-use petsc::Session;
+use petsc::{PetscInt, Session};
 
 /// Places of one node that differ by more than this part of the coordinates are different places.
 const SAME: f64 = 1e-9;
@@ -21,17 +21,17 @@ const SAME: f64 = 1e-9;
 /// The data that one rank gives of a surface.
 pub struct GivenSurface<'a> {
     /// The matrix whose unknowns `dofs` lists; negative: numbers among all unknowns.
-    pub matrix: i32,
-    pub dim: i32,
+    pub matrix: PetscInt,
+    pub dim: PetscInt,
     /// Unknowns of a node.
-    pub components: i32,
+    pub components: PetscInt,
     /// The unknowns of each node; a negative one is no unknown but a displacement of zero.
-    pub dofs: &'a [i32],
+    pub dofs: &'a [PetscInt],
     pub coords: &'a [f64],
     /// The start of each face in `nodes`.
-    pub start: &'a [i32],
+    pub start: &'a [PetscInt],
     /// Nodes of the faces, as places in the list of this rank's nodes.
-    pub nodes: &'a [i32],
+    pub nodes: &'a [PetscInt],
 }
 
 /// The number of unknowns of a matrix.
@@ -43,7 +43,7 @@ pub struct HostSurface {
     pub components: usize,
     pub side: MortarSide,
     /// The unknowns of each node of `side`.
-    pub dofs: Vec<Vec<i32>>,
+    pub dofs: Vec<Vec<PetscInt>>,
     /// The node of `side` for each node that this rank gave; `None` for one in none of its faces.
     pub mine: Vec<Option<u32>>,
     /// The lowest rank that gave each node.
@@ -72,7 +72,7 @@ impl GivenSurface<'_> {
             Err(_) => (HostNumbering::All, None),
             Ok(k) => (HostNumbering::Matrix(k), Some(size(k)?)),
         };
-        let beyond = |d: &&i32| **d >= 0 && known.is_some_and(|n| **d as usize >= n);
+        let beyond = |d: &&PetscInt| **d >= 0 && known.is_some_and(|n| **d as usize >= n);
         if let (Some(dof), Some(n)) = (self.dofs.iter().find(beyond), known) {
             return Err(Fault::OutOfRange.error(format!(
                 "{} has unknown {dof}, expected numbers below {n}, those of matrix {}",
@@ -101,7 +101,7 @@ impl GivenSurface<'_> {
                     list.len()
                 )));
             };
-            if let Some(k) = list.iter().find(|k| !(0..n as i32).contains(*k)) {
+            if let Some(k) = list.iter().find(|k| !(0..n as PetscInt).contains(*k)) {
                 return Err(Fault::OutOfRange.error(format!(
                     "face {f} of {} names node {k}, expected numbers from 0 to below {n}",
                     whose()
@@ -125,7 +125,7 @@ impl GivenSurface<'_> {
     }
 
     /// This rank's part as it is sent: nodes in faces only, so that a host may give all its nodes.
-    fn sent(&self) -> (Parcels<[f64; 3], i32>, Parcels<(), u32>) {
+    fn sent(&self) -> (Parcels<[f64; 3], PetscInt>, Parcels<(), u32>) {
         let (mut nodes, mut faces) = (Parcels::default(), Parcels::default());
         let used = self.used();
         let (dim, components) = (self.dim as usize, self.components as usize);
@@ -140,7 +140,7 @@ impl GivenSurface<'_> {
         }
         for range in self.start.windows(2) {
             let list = &self.nodes[range[0] as usize..range[1] as usize];
-            let place = |k: &i32| used.binary_search(&(*k as usize)).expect("it is in a face");
+            let place = |k: &PetscInt| used.binary_search(&(*k as usize)).expect("it is in a face");
             faces.push((), list.iter().map(|k| place(k) as u32));
         }
         (nodes, faces)
@@ -150,11 +150,11 @@ impl GivenSurface<'_> {
 /// A node as a rank gives it.
 struct SurfaceNode {
     x: [f64; 3],
-    dofs: Vec<i32>,
+    dofs: Vec<PetscInt>,
 }
 
 /// The key that tells nodes apart: their unknowns, or their places where they have none.
-type NodeKey = (Vec<i32>, [u64; 3]);
+type NodeKey = (Vec<PetscInt>, [u64; 3]);
 
 impl SurfaceNode {
     fn key(&self) -> NodeKey {
@@ -277,8 +277,8 @@ struct RankSurface {
 }
 
 impl RankSurface {
-    fn new(nodes: &Parcels<[f64; 3], i32>, faces: &Parcels<(), u32>) -> RankSurface {
-        let node = |(x, dofs): ([f64; 3], &[i32])| SurfaceNode {
+    fn new(nodes: &Parcels<[f64; 3], PetscInt>, faces: &Parcels<(), u32>) -> RankSurface {
+        let node = |(x, dofs): ([f64; 3], &[PetscInt])| SurfaceNode {
             x,
             dofs: dofs.to_vec(),
         };

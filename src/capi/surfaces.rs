@@ -8,31 +8,32 @@ use super::rows::law;
 use super::surface::{GivenSurface, HostSurface};
 use crate::Result;
 use base::Fault;
+use petsc::PetscInt;
 use std::ffi::c_int;
 
 #[allow(clippy::too_many_arguments)]
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddSurface(
     ff: HandlePointer,
-    matrix: c_int,
-    dim: c_int,
-    components: c_int,
-    n: c_int,
-    dofs: *const c_int,
+    matrix: PetscInt,
+    dim: PetscInt,
+    components: PetscInt,
+    n: PetscInt,
+    dofs: *const PetscInt,
     coords: *const f64,
-    faces: c_int,
-    start: *const c_int,
-    nodes: *const c_int,
-    surface: *mut c_int,
+    faces: PetscInt,
+    start: *const PetscInt,
+    nodes: *const PetscInt,
+    surface: *mut PetscInt,
 ) -> c_int {
     together(ff, c"FetiFetiAddSurface", |o| {
         let arrays = || {
-            let per_node = |k: c_int| n.saturating_mul(k.max(1));
+            let per_node = |k: PetscInt| n.saturating_mul(k.max(1));
             let (start, nodes) = match faces {
                 0 => (&[][..], &[][..]),
                 _ => {
                     let start = array(start, faces.saturating_add(1), "start")?;
-                    (start, array(nodes, starts(start)? as c_int, "nodes")?)
+                    (start, array(nodes, starts(start)? as PetscInt, "nodes")?)
                 }
             };
             Ok(GivenSurface {
@@ -51,7 +52,7 @@ pub unsafe extern "C" fn FetiFetiAddSurface(
             o.size_of(k, "a surface names")
         })?;
         o.surfaces.push(made);
-        put(surface, number as c_int);
+        put(surface, number as PetscInt);
         Ok(())
     })
 }
@@ -60,19 +61,19 @@ pub unsafe extern "C" fn FetiFetiAddSurface(
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiAddMortar(
     ff: HandlePointer,
-    first: c_int,
-    second: c_int,
-    kind: c_int,
+    first: PetscInt,
+    second: PetscInt,
+    kind: PetscInt,
     reach: f64,
     adjust: f64,
     gap: f64,
     gaps: *const f64,
-    without: *const c_int,
-    mortar: *mut c_int,
+    without: *const PetscInt,
+    mortar: *mut PetscInt,
 ) -> c_int {
     together(ff, c"FetiFetiAddMortar", |o| {
         let n = usize::try_from(first).ok().and_then(|k| o.surfaces.get(k));
-        let n = n.map_or(0, |s| s.mine.len()) as c_int;
+        let n = n.map_or(0, |s| s.mine.len()) as PetscInt;
         let law = law(kind, || "a mortar is".into());
         let given = GivenMortar {
             surfaces: [first, second],
@@ -88,7 +89,7 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
             list: &o.surfaces,
         };
         let made = all.mortar(&given)?;
-        put(mortar, o.mortars.len() as c_int);
+        put(mortar, o.mortars.len() as PetscInt);
         o.mortars.push(made);
         o.changed.rows = true;
         Ok(())
@@ -109,12 +110,12 @@ pub unsafe extern "C" fn FetiFetiResetMortar(ff: HandlePointer) -> c_int {
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiGetMortar(
     ff: HandlePointer,
-    mortar: c_int,
-    n: c_int,
+    mortar: PetscInt,
+    n: PetscInt,
     lambda: *mut f64,
     pressure: *mut f64,
     gap: *mut f64,
-    state: *mut c_int,
+    state: *mut PetscInt,
 ) -> c_int {
     alone(ff, c"FetiFetiGetMortar", |o| {
         let (m, surface) = solved_mortar(o, mortar, n)?;
@@ -150,7 +151,11 @@ pub unsafe extern "C" fn FetiFetiGetMortar(
 ///
 /// # Errors
 /// A number that there is not; another number of nodes.
-pub(super) fn solved_mortar(o: &Object, mortar: c_int, n: c_int) -> Result<(usize, &HostSurface)> {
+pub(super) fn solved_mortar(
+    o: &Object,
+    mortar: PetscInt,
+    n: PetscInt,
+) -> Result<(usize, &HostSurface)> {
     o.outcome()?;
     let solved = o.mortar_rows.counts.len();
     let found = usize::try_from(mortar).ok().filter(|&m| m < solved);

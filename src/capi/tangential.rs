@@ -8,11 +8,10 @@ use crate::Result;
 use base::linalg::vec3::{dot, tangents, unit};
 use base::Fault;
 use parallel::exchange::sum_all;
-use petsc::Session;
-use std::ffi::c_int;
+use petsc::{PetscInt, Session};
 
 /// A FetiFetiRowState of the C interface.
-pub type RowState = c_int;
+pub type RowState = PetscInt;
 
 /// The row does not hold: the sides are apart.
 pub const OPEN: RowState = 0;

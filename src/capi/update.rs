@@ -6,7 +6,7 @@ use crate::embed::torn::unassembled;
 use crate::Result;
 use base::linalg::csr::Csr;
 use base::Fault;
-use petsc::Mat;
+use petsc::{Mat, PetscInt};
 
 impl Object {
     /// The entries of matrices have changed: `matrices` has those that were added, in their order; `None` for one that
@@ -54,7 +54,7 @@ impl Object {
     ///
     /// # Errors
     /// A subdomain that there is not; a matrix of another size.
-    pub fn update_subdomain(&mut self, s: i32, k: Csr) -> Result<()> {
+    pub fn update_subdomain(&mut self, s: PetscInt, k: Csr) -> Result<()> {
         let rank = self.session.rank();
         let mut arrays = self.subdomains.iter_mut().filter(|s| s.map.is_none());
         let count = arrays.by_ref().count();

@@ -5,6 +5,7 @@
 //! entry that was exactly zero and no longer is, a boundary condition that comes or goes, a part that falls apart, or a
 //! motion without energy that begins or ceases to be one, and the frame is no longer theirs.
 
+use petsc::PetscInt;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 
@@ -41,7 +42,7 @@ pub struct TornFrame {
 /// several times means the same dof.
 pub struct Local<'a> {
     pub k: Cow<'a, Csr>,
-    pub dofs: Cow<'a, [i32]>,
+    pub dofs: Cow<'a, [PetscInt]>,
 }
 
 /// The numbers of other matrices, by part.

@@ -7,7 +7,7 @@ use super::bonds::Bond;
 use crate::Result;
 use base::linalg::union_find::UnionFind;
 use parallel::exchange::{gather_all, sum_all};
-use petsc::{partition as by_petsc, Options, Session};
+use petsc::{partition as by_petsc, Options, PetscInt, Session};
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -115,13 +115,13 @@ fn neighbours(n: usize, bonds: &[Bond]) -> Vec<Vec<(usize, usize)>> {
 }
 
 /// The graph in compressed rows.
-fn graph(near: &Neighbours) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
+fn graph(near: &Neighbours) -> (Vec<PetscInt>, Vec<PetscInt>, Vec<PetscInt>) {
     let mut row = vec![0];
     let (mut col, mut weight) = (Vec::new(), Vec::new());
     for list in near {
-        col.extend(list.iter().map(|l| l.0 as i32));
-        weight.extend(list.iter().map(|l| l.1 as i32));
-        row.push(col.len() as i32);
+        col.extend(list.iter().map(|l| l.0 as PetscInt));
+        weight.extend(list.iter().map(|l| l.1 as PetscInt));
+        row.push(col.len() as PetscInt);
     }
     (row, col, weight)
 }

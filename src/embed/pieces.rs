@@ -2,6 +2,7 @@
 
 use base::linalg::csr::Csr;
 use base::linalg::sorted::distinct;
+use petsc::PetscInt;
 use std::collections::HashMap;
 
 /// One subdomain matrix of the host.
@@ -32,7 +33,7 @@ impl TornPiece {
 /// map may list a dof several times, once for each subdomain that has it.
 pub fn torn_from(
     k: &Csr,
-    map: &[i32],
+    map: &[PetscInt],
     block_size: usize,
     copies: Option<usize>,
     body: Option<u64>,
@@ -45,7 +46,7 @@ pub fn torn_from(
 
 /// A local matrix by increasing global dofs. Rows of the same dof are added (a periodic mesh on one rank has such
 /// rows), rows without a dof are left out. `None` if no row is left.
-fn piece(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Option<TornPiece> {
+fn piece(k: &Csr, map: &[PetscInt], block_size: usize, body: Option<u64>) -> Option<TornPiece> {
     let dofs = distinct(map.iter().filter(|&&g| g >= 0).map(|&g| g as u32));
     if dofs.is_empty() {
         return None;
@@ -126,7 +127,7 @@ fn first_rows(n: usize, node: &dyn Fn(usize) -> usize) -> Vec<usize> {
 /// entries (boundary conditions) cannot be assigned to a subdomain and form a piece of their own.
 fn pieces(
     k: &Csr,
-    map: &[i32],
+    map: &[PetscInt],
     [block_size, together]: [usize; 2],
     body: Option<u64>,
 ) -> Vec<TornPiece> {
@@ -182,7 +183,7 @@ fn pieces(
             }
         }
         let part = Csr::from_triplets(rows.len(), &triplets);
-        let dofs: Vec<i32> = rows.iter().map(|&i| map[i]).collect();
+        let dofs: Vec<PetscInt> = rows.iter().map(|&i| map[i]).collect();
         out.extend(piece(&part, &dofs, block_size, body));
     }
     out

@@ -29,7 +29,7 @@ use crate::substructures::{Law, Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::exchange::total;
 use parallel::halo::Halo;
-use petsc::{Session, Vec as PetscVec};
+use petsc::{Event, Session, Vec as PetscVec};
 
 /// The result of a solve.
 #[derive(Debug, Clone)]
@@ -106,6 +106,7 @@ impl Embedded {
                 settings.prefix
             )));
         }
+        let event = Event::register(session, "FetiFetiTear")?.scope()?;
         let primal = asked.primal;
         let (ghosts, halo) = torn.halo(session)?;
         let states = states(session, torn);
@@ -199,6 +200,7 @@ impl Embedded {
             .with_friction(contact.friction_behind(n_ties));
         // The solver has their loads.
         parts.iter_mut().for_each(|p| p.known = Vec::new());
+        drop(event);
         let solver = FetiFeti::new(session, problem, settings)?;
         Ok(Embedded {
             session: session.clone(),

@@ -4,8 +4,10 @@ use super::pieces::{torn_from, TornPiece};
 use crate::substructures::{FrictionNode, Law};
 use crate::{Error, Result};
 use base::linalg::sorted::distinct;
+use parallel::exchange::exchange;
 use parallel::halo::Halo;
-use petsc::{AttachedNullSpace, Mat, Session, Vec as PetscVec};
+use parallel::owners::Owners;
+use petsc::{AttachedNullSpace, Mat, PetscInt, Session, Vec as PetscVec};
 use std::collections::HashSet;
 
 /// A row of the host: Σ coefficient · u(global dof) = or ≤ gap.
@@ -66,6 +68,8 @@ impl Torn {
                 "the operator has {rows} rows and {cols} columns, expected a square matrix"
             )));
         }
+        countable(rows)?;
+        session.agree(on_the_processor(a))?;
         let (k, map) = session.agree(a.local_part())?;
         let (layout, block_size) = (a.right_vec()?, a.block_size()?);
         let copies = a.is_repeated()?.then_some(block_size);
@@ -101,6 +105,36 @@ impl Torn {
     }
 }
 
+/// Returns an error if entries of the matrix or of its vectors lie on a device.
+fn on_the_processor(a: &Mat) -> Result<()> {
+    let found = [a.vec_type_name()?, a.local_type_name()?];
+    match found.iter().find(|name| is_of_device(name)) {
+        None => Ok(()),
+        Some(name) => Err(Error::input(format!(
+            "the operator has entries or vectors of type {name}, on a device, expected host memory: \
+             the method computes on the processor; take -vec_type standard and -mat_type is with local matrices aij"
+        ))),
+    }
+}
+
+/// Whether a type of vectors or matrices, by PETSc's name, keeps its entries on a device.
+fn is_of_device(name: &str) -> bool {
+    ["cuda", "cusparse", "hip", "kokkos", "viennacl"]
+        .iter()
+        .any(|device| name.contains(device))
+}
+
+/// Returns an error if the method cannot number so many unknowns, which PETSc with 64-bit indices can.
+pub fn countable(n: usize) -> Result<()> {
+    if u32::try_from(n).is_ok() {
+        return Ok(());
+    }
+    Err(Error::input(format!(
+        "there are {n} unknowns, expected at most {}: the method numbers them with 32 bits",
+        u32::MAX
+    )))
+}
+
 /// Returns an error if the matrix is no MATIS.
 pub fn unassembled(a: &Mat) -> Result<()> {
     let kind = a.type_name()?;
@@ -118,6 +152,33 @@ pub fn unassembled(a: &Mat) -> Result<()> {
          an assembled matrix cannot be torn into subdomains without its elements; \
          assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
     )))
+}
+
+/// The entries of `ghosts`, whose halo is given, that some rank lists. The numbers are those of unknowns. Collective.
+pub fn marked(
+    session: &Session,
+    layout: &PetscVec,
+    list: &[PetscInt],
+    (ghosts, halo): (&[u32], &Halo),
+) -> Result<HashSet<u32>> {
+    let marks = layout.duplicate()?;
+    marks.set(0.0)?;
+    let range = marks.ownership_range();
+    let owners = Owners::new(session.comm(), range.start);
+    let mut outgoing = vec![Vec::new(); session.size()];
+    for &dof in list {
+        outgoing[owners.of(dof as u64)].push(dof as usize);
+    }
+    {
+        let mut entries = marks.array_mut()?;
+        for dof in exchange(session.comm(), outgoing) {
+            entries[dof - range.start] = 1.0;
+        }
+    }
+    let mut values = vec![0.0; ghosts.len()];
+    halo.fetch(&marks, &mut values)?;
+    let marked = ghosts.iter().zip(values).filter(|(_, v)| *v != 0.0);
+    Ok(marked.map(|(&d, _)| d).collect())
 }
 
 /// The vectors of a null space, including the constants.

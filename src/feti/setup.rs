@@ -38,7 +38,7 @@ use parallel::clock::{self, Phase};
 use parallel::exchange::any;
 use parallel::halo::Halo;
 use parallel::team::Team;
-use petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
+use petsc::{Comm, Event, Ksp, NormType, Session, Vec as PetscVec};
 
 /// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;
@@ -163,7 +163,7 @@ impl SetUpResult {
             stiffness: &stiffness,
             settings,
         })?; /*                                                                 M⁻¹                    */
-        let natural = clock::timed(Phase::NaturalSetup, || {
+        let natural = phase(session, (Phase::NaturalSetup, "FetiFetiCoarse"), || {
             let projector = (settings.projector, varies);
             let prefix = format!("{}gtg_", settings.prefix);
             NaturalCoarse::new(
@@ -193,6 +193,16 @@ impl SetUpResult {
     }
 }
 
+/// Does a part of the set-up, with its clock running and as an event of -log_view.
+fn phase<T>(
+    session: &Session,
+    (phase, name): (Phase, &str),
+    work: impl FnOnce() -> Result<T>,
+) -> Result<T> {
+    let _event = Event::register(session, name)?.scope()?;
+    clock::timed(phase, work)
+}
+
 /// Factors the subdomains of this rank and adds the adaptive primal constraints. Collective.
 fn subdomains(
     session: &Session,
@@ -204,7 +214,7 @@ fn subdomains(
 ) -> Result<(Factored, Added)> {
     let comm = session.comm();
     let kept = kept.map_or(Vec::new(), |kept| kept.still(jump));
-    let factored = clock::timed(Phase::LocalSetup, || {
+    let factored = phase(session, (Phase::LocalSetup, "FetiFetiLocal"), || {
         factor(session, problem, jump, team, (settings, needs_s), &kept)
     });
     let Factored {
@@ -246,7 +256,7 @@ fn stiffness(
     let comm = session.comm();
     let mut space = PrimalSpace::new(comm, problem, sharing, &jump.averages, &locals);
     slack::check(session, problem, &space, &locals)?;
-    let primal = clock::timed(Phase::PrimalSetup, || {
+    let primal = phase(session, (Phase::PrimalSetup, "FetiFetiPrimal"), || {
         let prefix = format!("{}coarse_", settings.prefix);
         let known = kept.map_or(&[][..], RetainedFactors::coarse);
         let patterns = (known, settings.keeps_analyses);

@@ -13,6 +13,7 @@ mod installed;
 mod ksp;
 mod languages;
 mod mortar;
+mod outer;
 mod packages;
 mod partitions;
 mod petsc_examples;

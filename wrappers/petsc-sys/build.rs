@@ -13,6 +13,7 @@ fn main() {
         "wrapper.h",
         "shim.h",
         "shim.c",
+        "compat.h",
         "process.c",
     ] {
         println!("cargo:rerun-if-changed={file}");
@@ -143,7 +144,6 @@ fn refuse_unusable(include: &[PathBuf]) {
     };
     for (name, kind) in [
         ("PETSC_USE_COMPLEX", "complex scalars"),
-        ("PETSC_USE_64BIT_INDICES", "64-bit indices"),
         ("PETSC_USE_REAL_SINGLE", "single precision"),
         ("PETSC_USE_REAL___FLOAT128", "quadruple precision"),
         ("PETSC_USE_REAL___FP16", "half precision"),
@@ -151,7 +151,7 @@ fn refuse_unusable(include: &[PathBuf]) {
         if defined(name) {
             fail(&format!(
                 "The PETSc described by {} was configured with {kind}; \
-                 fetifeti needs real double scalars and 32-bit indices.",
+                 fetifeti needs real double scalars.",
                 path.display()
             ));
         }

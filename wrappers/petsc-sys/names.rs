@@ -127,6 +127,7 @@ const FUNCTIONS: &[&str] = &[
     "MatRestoreRow",
     "MatGetDiagonal",
     "MatGetType",
+    "MatGetVecType",
     "MatNorm",
     "MatScale",
     "MatConvert",
@@ -247,6 +248,7 @@ const VARIABLES: &[&str] = &[
 const TYPES: &[&str] = &[
     "PetscObject",
     "PetscInt",
+    "PC",
     "PetscCount",
     "PetscScalar",
     "PetscBool",

@@ -1,4 +1,5 @@
 #include "shim.h"
+#include "compat.h"
 #include <string.h>
 
 MPI_Comm ff_comm_world(void)
@@ -34,17 +35,7 @@ static PetscErrorCode AttachedFree(Attached *attached)
   return PetscFree(attached);
 }
 
-#if PETSC_VERSION_GE(3, 23, 0)
-static PetscErrorCode AttachedDestroy(void **context)
-{
-  return AttachedFree((Attached *)*context);
-}
-#else
-static PetscErrorCode AttachedDestroy(void *context)
-{
-  return AttachedFree((Attached *)context);
-}
-#endif
+FF_DROP(AttachedDestroy, AttachedFree, Attached)
 
 int ff_attach(PetscObject object, const char *key, void *context, void (*drop)(void *))
 {
@@ -56,11 +47,7 @@ int ff_attach(PetscObject object, const char *key, void *context, void (*drop)(v
   attached->drop    = drop;
   PetscCall(PetscContainerCreate(PetscObjectComm(object), &container));
   PetscCall(PetscContainerSetPointer(container, attached));
-#if PETSC_VERSION_GE(3, 23, 0)
-  PetscCall(PetscContainerSetCtxDestroy(container, (PetscCtxDestroyFn *)AttachedDestroy));
-#else
-  PetscCall(PetscContainerSetUserDestroy(container, AttachedDestroy));
-#endif
+  PetscCall(FFContainerSetDrop(container, AttachedDestroy));
   PetscCall(PetscObjectCompose(object, key, (PetscObject)container));
   PetscCall(PetscContainerDestroy(&container));
   return 0;
@@ -77,12 +64,6 @@ void *ff_attached(PetscObject object, const char *key)
 }
 
 /* ---- shells ---- */
-
-#if PETSC_VERSION_GE(3, 24, 0)
-  #define FF_OPERATION(f) ((PetscErrorCodeFn *)(f))
-#else
-  #define FF_OPERATION(f) ((void (*)(void))(f))
-#endif
 
 int ff_mat_shell_set_mult(Mat mat, int (*f)(Mat, Vec, Vec))
 {
@@ -176,8 +157,8 @@ static PetscErrorCode ff_watched(KSP ksp, PetscInt it, PetscReal rnorm, KSPConve
 int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, ff_look look, void *looker,
                          int *stopped)
 {
-  PetscErrorCode (*drop)(void *) = NULL;
-  ff_watch       watch           = {NULL, NULL, first, 0, limit, rest, look, looker};
+  FFDropTest     drop  = NULL;
+  ff_watch       watch = {NULL, NULL, first, 0, limit, rest, look, looker};
   PetscErrorCode code;
 
   PetscCall(KSPGetAndClearConvergenceTest(ksp, &watch.test, &watch.context, &drop));
@@ -262,7 +243,8 @@ int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double 
 
 /* ---- graphs and MATIS ---- */
 
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int *part)
+int ff_partition(const char *prefix, PetscInt n, const PetscInt *row, const PetscInt *col, const PetscInt *weight,
+                 PetscInt parts, PetscInt *part)
 {
   MatPartitioning partitioning;
   Mat             graph;
@@ -285,7 +267,7 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
   PetscCall(MatPartitioningSetFromOptions(partitioning));
   PetscCall(MatPartitioningApply(partitioning, &is));
   PetscCall(ISGetIndices(is, &found));
-  for (k = 0; k < n; k++) part[k] = (int)found[k];
+  for (k = 0; k < n; k++) part[k] = found[k];
   PetscCall(ISRestoreIndices(is, &found));
   PetscCall(ISDestroy(&is));
   PetscCall(MatPartitioningDestroy(&partitioning));
@@ -295,13 +277,9 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
 
 int ff_is_repeated(Mat mat, int *repeated)
 {
-  PetscBool flag = PETSC_FALSE;
+  PetscBool flag;
 
-#if PETSC_VERSION_GE(3, 21, 0)
-  PetscCall(MatISGetAllowRepeated(mat, &flag));
-#else
-  (void)mat;
-#endif
+  PetscCall(FFIsRepeated(mat, &flag));
   *repeated = flag ? 1 : 0;
   return 0;
 }

@@ -57,7 +57,8 @@ int ff_push_error_handler(ff_trace trace);
 
 /* part[i] of each vertex of a symmetric graph with edge weights in compressed rows, by MatPartitioning on this process
    alone. The options have this prefix: -<prefix>mat_partitioning_type sets the type. */
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int *part);
+int ff_partition(const char *prefix, PetscInt n, const PetscInt *row, const PetscInt *col, const PetscInt *weight,
+                 PetscInt parts, PetscInt *part);
 
 /* Whether the local-to-global map of a MATIS may list a dof several times, once for each of several subdomains (PETSc
    3.21 and later). */

@@ -13,7 +13,7 @@ use crate::clock;
 use crate::traffic;
 use base::linalg::sorted::distinct;
 use base::Result;
-use petsc::{Scatter, Session, Vec as PetscVec};
+use petsc::{PetscInt, Scatter, Session, Vec as PetscVec};
 
 /// Moves entries between a distributed vector and this rank's ghost list, both ways.
 pub struct Halo {
@@ -41,7 +41,7 @@ pub fn numbered<L: AsRef<[u32]>>(lists: &[L]) -> (Vec<u32>, Vec<Vec<u32>>) {
 impl Halo {
     /// A halo for vectors laid out like `layout`; `ghosts` lists global numbers. Collective.
     pub fn new(session: &Session, layout: &PetscVec, ghosts: &[u32]) -> Result<Halo> {
-        let indices: Vec<i32> = ghosts.iter().map(|&g| g as i32).collect();
+        let indices: Vec<PetscInt> = ghosts.iter().map(|&g| g as PetscInt).collect();
         let buffer = PetscVec::seq(session, ghosts.len())?;
         Ok(Halo {
             scatter: Scatter::new(layout, &indices, &buffer)?,

@@ -7,6 +7,7 @@ use super::{Comm, ConvergedReason, Ksp, Mat, Session, Vec};
 use base::Result;
 use petsc_sys as sys;
 use petsc_sys::Flag;
+use petsc_sys::PetscInt;
 use std::ffi::{c_int, c_void};
 use std::time::Instant;
 
@@ -108,9 +109,9 @@ impl Eps {
     pub fn set_dimensions(&self, nev: usize, ncv: Option<usize>) -> Result<()> {
         petsc!(EPSSetDimensions(
             self.raw(),
-            nev as i32,
-            ncv.map_or(sys::PETSC_DEFAULT, |n| n as i32),
-            sys::PETSC_DEFAULT
+            nev as PetscInt,
+            ncv.map_or(sys::PETSC_CURRENT, |n| n as PetscInt),
+            sys::PETSC_CURRENT
         ))
     }
 
@@ -119,7 +120,7 @@ impl Eps {
         petsc!(EPSSetTolerances(
             self.raw(),
             tol,
-            max_it.map_or(sys::PETSC_DEFAULT, |n| n as i32)
+            max_it.map_or(sys::PETSC_CURRENT, |n| n as PetscInt)
         ))
     }
 
@@ -129,7 +130,7 @@ impl Eps {
         let mut raw = raw?;
         petsc!(EPSSetInitialSpace(
             self.raw(),
-            raw.len() as i32,
+            raw.len() as PetscInt,
             raw.as_mut_ptr()
         ))
     }
@@ -212,7 +213,12 @@ impl Eps {
     /// Real part of the i-th converged eigenvalue, the most wanted first.
     pub fn eigenvalue(&self, i: usize) -> Result<f64> {
         let (mut re, mut im) = (0.0, 0.0);
-        petsc!(EPSGetEigenvalue(self.raw(), i as i32, &mut re, &mut im))?;
+        petsc!(EPSGetEigenvalue(
+            self.raw(),
+            i as PetscInt,
+            &mut re,
+            &mut im
+        ))?;
         Ok(re)
     }
 
@@ -221,7 +227,7 @@ impl Eps {
         let x = x.write()?;
         petsc!(EPSGetEigenvector(
             self.raw(),
-            i as i32,
+            i as PetscInt,
             x,
             std::ptr::null_mut()
         ))
@@ -229,7 +235,7 @@ impl Eps {
 
     /// SLEPc's estimate of the relative error of the i-th eigenvalue.
     pub fn error_estimate(&self, i: usize) -> Result<f64> {
-        got(|error| petsc!(EPSGetErrorEstimate(self.raw(), i as i32, error)))
+        got(|error| petsc!(EPSGetErrorEstimate(self.raw(), i as PetscInt, error)))
     }
 
     /// The solver for B in the spectral transformation.

@@ -150,7 +150,7 @@ pub fn text(call: impl FnOnce(&mut *const c_char) -> Result<()>) -> Result<Strin
 ///
 /// # Safety
 /// `data` has `n` entries, or `n` is zero.
-pub(super) unsafe fn copied<T: Clone>(data: *const T, n: c_int) -> Vec<T> {
+pub(super) unsafe fn copied<T: Clone>(data: *const T, n: sys::PetscInt) -> Vec<T> {
     if n == 0 {
         return Vec::new();
     }

@@ -6,6 +6,7 @@ use super::{Comm, Mat, Pc, Session, Vec};
 use base::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
+use petsc_sys::PetscInt;
 
 /// The residual norm of the convergence test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,20 +114,20 @@ impl Ksp {
         rtol: Option<f64>,
         atol: Option<f64>,
         dtol: Option<f64>,
-        max_it: Option<i32>,
+        max_it: Option<PetscInt>,
     ) -> Result<()> {
-        let or = |value: Option<f64>| value.unwrap_or(sys::PETSC_DEFAULT as f64);
+        let or = |value: Option<f64>| value.unwrap_or(sys::PETSC_CURRENT as f64);
         petsc!(KSPSetTolerances(
             self.raw(),
             or(rtol),
             or(atol),
             or(dtol),
-            max_it.unwrap_or(sys::PETSC_DEFAULT)
+            max_it.unwrap_or(sys::PETSC_CURRENT)
         ))
     }
 
     /// The current (rtol, atol, dtol, max_it), options included.
-    pub fn tolerances(&self) -> Result<(f64, f64, f64, i32)> {
+    pub fn tolerances(&self) -> Result<(f64, f64, f64, PetscInt)> {
         let (mut rtol, mut atol, mut dtol, mut max_it) = (0.0, 0.0, 0.0, 0);
         petsc!(KSPGetTolerances(
             self.raw(),
@@ -288,7 +289,7 @@ impl Ksp {
         let (mut re, mut im, mut found) = (vec![0.0; n], vec![0.0; n], 0);
         petsc!(KSPComputeEigenvalues(
             self.raw(),
-            n as i32,
+            n as PetscInt,
             re.as_mut_ptr(),
             im.as_mut_ptr(),
             &mut found

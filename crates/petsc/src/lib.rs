@@ -49,6 +49,7 @@ pub use matis::AttachedNullSpace;
 pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
+pub use petsc_sys::PetscInt;
 pub use scatter::Scatter;
 pub use session::version;
 pub use session::{max_memory, print_on_stderr, Comm, Session};
@@ -61,7 +62,8 @@ pub use watch::{LargeEigenvalue, ResidualMonitor, Stopped};
 pub mod raw {
     pub use super::error::{caught, settled as settle};
     pub use petsc_sys::{
-        ff_comm_f2c, ff_comm_self, ff_error, MPI_Comm, Mat, MatNullSpace, PetscViewer, Vec, IS, KSP,
+        ff_comm_f2c, ff_comm_self, ff_error, MPI_Comm, Mat, MatNullSpace, PetscInt, PetscViewer,
+        Vec, IS, KSP, PC,
     };
 
     /// Prints to a viewer if it is a text viewer.

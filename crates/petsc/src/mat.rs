@@ -7,6 +7,7 @@ use base::linalg::csr::Csr;
 use base::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
+use petsc_sys::PetscInt;
 
 /// A property of a matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,13 +45,13 @@ impl Mat {
         comm: Comm,
         rows: usize,
         cols: usize,
-        entries: &[(i32, i32, f64)],
+        entries: &[(PetscInt, PetscInt, f64)],
     ) -> Result<Mat> {
         let mat = Mat::empty_aij(session, comm, rows, cols)?;
         let raw = mat.raw();
         // PETSc sorts the index arrays in place.
-        let mut i: std::vec::Vec<i32> = entries.iter().map(|e| e.0).collect();
-        let mut j: std::vec::Vec<i32> = entries.iter().map(|e| e.1).collect();
+        let mut i: std::vec::Vec<PetscInt> = entries.iter().map(|e| e.0).collect();
+        let mut j: std::vec::Vec<PetscInt> = entries.iter().map(|e| e.1).collect();
         let v: std::vec::Vec<f64> = entries.iter().map(|e| e.2).collect();
         petsc!(MatSetPreallocationCOO(
             raw,
@@ -71,14 +72,14 @@ impl Mat {
             n,
             n,
             &(0..n)
-                .map(|i| csr.row(i).0.len() as i32)
+                .map(|i| csr.row(i).0.len() as PetscInt)
                 .collect::<std::vec::Vec<_>>(),
             &[],
         )?;
         for i in 0..n {
             let (col, val) = csr.row(i);
-            let col: std::vec::Vec<i32> = col.iter().map(|&j| j as i32).collect();
-            mat.add_values(&[i as i32], &col, val)?;
+            let col: std::vec::Vec<PetscInt> = col.iter().map(|&j| j as PetscInt).collect();
+            mat.add_values(&[i as PetscInt], &col, val)?;
         }
         mat.assemble()?;
         Ok(mat)
@@ -91,8 +92,8 @@ impl Mat {
         comm: Comm,
         rows: usize,
         cols: usize,
-        d_nnz: &[i32],
-        o_nnz: &[i32],
+        d_nnz: &[PetscInt],
+        o_nnz: &[PetscInt],
     ) -> Result<Mat> {
         if d_nnz.len() != rows || (comm == Comm::World && o_nnz.len() != rows) {
             return Err(Error::environment(format!(
@@ -117,7 +118,7 @@ impl Mat {
     }
 
     /// Adds a dense block (by rows) at these global rows and columns; [`Mat::assemble`] must follow.
-    pub fn add_values(&self, rows: &[i32], cols: &[i32], block: &[f64]) -> Result<()> {
+    pub fn add_values(&self, rows: &[PetscInt], cols: &[PetscInt], block: &[f64]) -> Result<()> {
         if rows.len() * cols.len() != block.len() {
             return Err(Error::environment(format!(
                 "Internal error: a {} × {} block came with {} values.",
@@ -128,9 +129,9 @@ impl Mat {
         }
         petsc!(MatSetValues(
             self.raw(),
-            rows.len() as i32,
+            rows.len() as PetscInt,
             rows.as_ptr(),
-            cols.len() as i32,
+            cols.len() as PetscInt,
             cols.as_ptr(),
             block.as_ptr(),
             sys::ADD_VALUES
@@ -138,7 +139,7 @@ impl Mat {
     }
 
     /// Sets all entries of these rows (global numbers of rows of this rank) to zero and keeps the pattern. Collective.
-    pub fn zero_rows(&self, rows: &[i32]) -> Result<()> {
+    pub fn zero_rows(&self, rows: &[PetscInt]) -> Result<()> {
         let raw = self.raw();
         petsc!(MatSetOption(
             raw,
@@ -198,7 +199,7 @@ impl Mat {
     }
 
     /// Global columns and values of a row of this rank.
-    pub fn row(&self, row: usize) -> Result<(std::vec::Vec<i32>, std::vec::Vec<f64>)> {
+    pub fn row(&self, row: usize) -> Result<(std::vec::Vec<PetscInt>, std::vec::Vec<f64>)> {
         let (mut n, mut cols, mut vals) = (0, std::ptr::null(), std::ptr::null());
         let row = count(row)?;
         petsc!(MatGetRow(self.raw(), row, &mut n, &mut cols, &mut vals))?;
@@ -256,7 +257,7 @@ impl Mat {
             petsc!(MatNullSpaceCreate(
                 comm,
                 Flag::of(constants),
-                list.len() as i32,
+                list.len() as PetscInt,
                 list.as_ptr(),
                 raw
             ))
@@ -266,8 +267,8 @@ impl Mat {
 }
 
 /// A count or index as a 32-bit PETSc integer.
-pub(super) fn count(n: usize) -> Result<i32> {
-    i32::try_from(n).map_err(|_| {
+pub(super) fn count(n: usize) -> Result<PetscInt> {
+    PetscInt::try_from(n).map_err(|_| {
         Error::input(format!(
             "A matrix of {n} rows or columns exceeds what PETSc with 32-bit indices can number."
         ))

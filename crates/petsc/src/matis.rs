@@ -8,6 +8,7 @@ use base::linalg::csr::Csr;
 use base::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
+use petsc_sys::PetscInt;
 
 impl Mat {
     /// The square matrix Σ Rᵀ A_local R over the ranks. `local_to_global[i]` is the global number of local dof i, and
@@ -15,7 +16,7 @@ impl Mat {
     pub fn unassembled(
         session: &Session,
         owned: usize,
-        local_to_global: &[i32],
+        local_to_global: &[PetscInt],
         local: &Mat,
     ) -> Result<Mat> {
         let comm = session.raw_comm(Comm::World);
@@ -67,6 +68,20 @@ impl Mat {
         text(|name| petsc!(MatGetType(self.raw(), name)))
     }
 
+    /// The type of vectors that the matrix is multiplied with, by PETSc's name.
+    pub fn vec_type_name(&self) -> Result<String> {
+        text(|name| petsc!(MatGetVecType(self.raw(), name)))
+    }
+
+    /// For a MATIS: the type of this rank's local matrix by PETSc's name.
+    pub fn local_type_name(&self) -> Result<String> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatISGetLocalMat(self.raw(), &mut raw))?;
+        let name = Mat::share(raw, self.session())?.type_name();
+        petsc!(MatISRestoreLocalMat(self.raw(), &mut raw))?;
+        name
+    }
+
     /// The block size: the number of rows of a node.
     pub fn block_size(&self) -> Result<usize> {
         let size = got(|size| petsc!(MatGetBlockSize(self.raw(), size)))?;
@@ -79,7 +94,7 @@ impl Mat {
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) if rows and columns have different maps; PETSc's own if the rows of
     /// the local matrix cannot be read.
-    pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<i32>)> {
+    pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<PetscInt>)> {
         let rows = self.local_to_global()?;
         let mut raw = std::ptr::null_mut();
         petsc!(MatISGetLocalMat(self.raw(), &mut raw))?;
@@ -117,7 +132,7 @@ impl Mat {
         Ok(out)
     }
 
-    fn local_to_global(&self) -> Result<std::vec::Vec<i32>> {
+    fn local_to_global(&self) -> Result<std::vec::Vec<PetscInt>> {
         let (mut rows, mut cols) = (std::ptr::null_mut(), std::ptr::null_mut());
         petsc!(MatISGetLocalToGlobalMapping(
             self.raw(),
@@ -188,7 +203,7 @@ impl AttachedNullSpace {
 }
 
 /// The global number of each local index of a map that a host program lent.
-fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
+fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<PetscInt>> {
     let n = got(|n| petsc!(ISLocalToGlobalMappingGetSize(map, n)))?;
     let mut data = std::ptr::null();
     petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;

@@ -3,7 +3,7 @@
 use super::mat::count;
 use super::Session;
 use base::Result;
-use std::os::raw::c_int;
+use petsc_sys::PetscInt;
 
 /// The part (0 ≤ part < `parts`) of every vertex of a symmetric graph in compressed rows with edge weights, computed on
 /// this rank alone. The option `-<prefix>mat_partitioning_type` sets the type.
@@ -13,12 +13,12 @@ use std::os::raw::c_int;
 pub fn partition(
     _session: &Session,
     prefix: &str,
-    (row, col, weight): (&[i32], &[i32], &[i32]),
+    (row, col, weight): (&[PetscInt], &[PetscInt], &[PetscInt]),
     parts: usize,
 ) -> Result<Vec<u64>> {
     let n = row.len() - 1;
     let prefix = super::error::c_string(prefix);
-    let mut part = vec![0 as c_int; n];
+    let mut part = vec![0 as PetscInt; n];
     petsc!(ff_partition(
         prefix.as_ptr(),
         count(n)?,

@@ -5,6 +5,7 @@ use super::handle::Handle;
 use super::{Is, Vec};
 use base::Result;
 use petsc_sys as sys;
+use petsc_sys::PetscInt;
 
 /// A preconditioner, usually of a [`Ksp`](super::Ksp). [`Pc::set_shell`] makes one from Rust code.
 pub type Pc = Handle<sys::_p_PC>;
@@ -57,7 +58,7 @@ impl Pc {
     /// Sets the coordinates of the rows that this rank owns: the first `dim` entries of each point. Collective.
     pub fn set_coordinates(&self, dim: usize, points: &[[f64; 3]]) -> Result<()> {
         let flat: std::vec::Vec<f64> = points.iter().flat_map(|p| p[..dim].to_vec()).collect();
-        let (dim, n) = (dim as i32, points.len() as i32);
+        let (dim, n) = (dim as PetscInt, points.len() as PetscInt);
         petsc!(PCSetCoordinates(
             self.raw(),
             dim,
@@ -71,7 +72,7 @@ impl Pc {
         let mut raw: std::vec::Vec<sys::IS> = fields.iter().map(|is| is.raw()).collect();
         petsc!(PCBDDCSetDofsSplittingLocal(
             self.raw(),
-            raw.len() as i32,
+            raw.len() as PetscInt,
             raw.as_mut_ptr()
         ))
     }

@@ -4,6 +4,7 @@ use super::handle::Handle;
 use super::{Comm, Is, Vec};
 use base::Result;
 use petsc_sys as sys;
+use petsc_sys::PetscInt;
 
 /// A plan that copies entries of one vector to another, and adds them back.
 pub type Scatter = Handle<sys::_p_PetscSF>;
@@ -12,10 +13,10 @@ impl Scatter {
     /// Entry k of `to` (a vector of this rank alone) is entry `from_indices[k]` (global numbering) of `from`.
     ///
     /// Collective over the ranks of `from`; `to` has at least as many entries as there are indices.
-    pub fn new(from: &Vec, from_indices: &[i32], to: &Vec) -> Result<Scatter> {
+    pub fn new(from: &Vec, from_indices: &[PetscInt], to: &Vec) -> Result<Scatter> {
         let session = from.session();
         let source = Is::general(session, Comm::Own, from_indices)?;
-        let first: std::vec::Vec<i32> = (0..from_indices.len() as i32).collect();
+        let first: std::vec::Vec<PetscInt> = (0..from_indices.len() as PetscInt).collect();
         let target = Is::general(session, Comm::Own, &first)?;
         Scatter::made(session, |raw| {
             petsc!(VecScatterCreate(

@@ -381,8 +381,8 @@ fn check_version() -> Result<()> {
         null_mut()
     ))?;
     let built = (
-        sys::PETSC_VERSION_MAJOR as i32,
-        sys::PETSC_VERSION_MINOR as i32,
+        sys::PETSC_VERSION_MAJOR as sys::PetscInt,
+        sys::PETSC_VERSION_MINOR as sys::PetscInt,
     );
     if (major, minor) == built {
         return Ok(());

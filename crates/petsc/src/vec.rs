@@ -5,6 +5,7 @@ use super::handle::Handle;
 use super::{Comm, Session};
 use base::{Error, Result};
 use petsc_sys as sys;
+use petsc_sys::PetscInt;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
@@ -65,7 +66,7 @@ impl Vec {
         Ok(vec)
     }
 
-    fn sized(session: &Session, comm: Comm, local: i32, global: i32) -> Result<Vec> {
+    fn sized(session: &Session, comm: Comm, local: PetscInt, global: PetscInt) -> Result<Vec> {
         let vec = Vec::made(session, |raw| {
             petsc!(VecCreate(session.raw_comm(comm), raw))
         })?;
@@ -273,8 +274,8 @@ fn binary(vec: &Vec, path: &Path, mode: sys::PetscFileMode) -> Result<Handle<sys
     })
 }
 
-fn count(n: usize) -> Result<i32> {
-    i32::try_from(n).map_err(|_| {
+fn count(n: usize) -> Result<PetscInt> {
+    PetscInt::try_from(n).map_err(|_| {
         Error::input(format!(
             "A vector of {n} entries exceeds what PETSc with 32-bit indices can number."
         ))

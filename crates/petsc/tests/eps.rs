@@ -2,7 +2,8 @@
 
 use crate::testing::with_session;
 use crate::{
-    extreme_eigenvalues, Comm, Eps, Mat, ProblemType, Session, ShellOp, Vec as PVec, Which,
+    extreme_eigenvalues, Comm, Eps, Mat, PetscInt, ProblemType, Session, ShellOp, Vec as PVec,
+    Which,
 };
 use faer::{Mat as Dense, Side};
 use std::cell::Cell;
@@ -33,7 +34,7 @@ fn petsc(session: &Session, a: &Dense<f64>) -> Mat {
     let mut entries = vec![];
     for i in 0..a.nrows() {
         for j in 0..a.ncols() {
-            entries.push((i as i32, j as i32, a[(i, j)]));
+            entries.push((i as PetscInt, j as PetscInt, a[(i, j)]));
         }
     }
     Mat::from_triplets(session, Comm::World, a.nrows(), a.ncols(), &entries).unwrap()

@@ -2,7 +2,8 @@
 
 use super::under_mpirun as mpi;
 use crate::{
-    extreme_eigenvalues, Comm, Ksp, Mat, NormType, Scatter, Session, ShellMat, ShellPc, Vec as PVec,
+    extreme_eigenvalues, Comm, Ksp, Mat, NormType, PetscInt, Scatter, Session, ShellMat, ShellPc,
+    Vec as PVec,
 };
 use base::{Error, Result};
 
@@ -33,10 +34,10 @@ fn agreed(session: &Session) -> Result<()> {
 
 /// Each rank holds two rows of the 1D Laplacian.
 fn laplacian(session: &Session, local: usize) -> Result<Mat> {
-    let n = (local * session.size()) as i32;
-    let first = (local * session.rank()) as i32;
+    let n = (local * session.size()) as PetscInt;
+    let first = (local * session.rank()) as PetscInt;
     let mut entries = vec![];
-    for i in first..first + local as i32 {
+    for i in first..first + local as PetscInt {
         // Half of the diagonal comes from the neighbour, so that off-rank contributions are summed.
         entries.push((i, i, 1.0));
         entries.push(((i + 1) % n, (i + 1) % n, 1.0));
@@ -82,7 +83,7 @@ fn values(session: &Session) -> Result<()> {
 
     // The same eigenvalues by SLEPc, with C = I.
     let identity: Vec<_> = (0..local)
-        .map(|k| (session.rank() * local + k) as i32)
+        .map(|k| (session.rank() * local + k) as PetscInt)
         .map(|i| (i, i, 1.0))
         .collect();
     let c = Mat::from_triplets(session, Comm::World, local, local, &identity)?;
@@ -92,7 +93,7 @@ fn values(session: &Session) -> Result<()> {
 
     // Every rank fetches the whole vector backwards and adds it back.
     let whole = PVec::seq(session, n)?;
-    let backwards: Vec<i32> = (0..n as i32).rev().collect();
+    let backwards: Vec<PetscInt> = (0..n as PetscInt).rev().collect();
     let scatter = Scatter::new(&x, &backwards, &whole)?;
     scatter.forward(&x, &whole)?;
     for (k, value) in whole.array()?.iter().enumerate() {
@@ -110,7 +111,7 @@ fn values(session: &Session) -> Result<()> {
     );
     let edge = Mat::from_csr(session, &edge)?;
     let owned = if session.rank() == 0 { 2 } else { 1 };
-    let rank = session.rank() as i32;
+    let rank = session.rank() as PetscInt;
     let torn = Mat::unassembled(session, owned, &[rank, rank + 1], &edge)?;
     let whole = torn.convert("aij")?;
     let (u, v, w) = (torn.right_vec()?, torn.left_vec()?, torn.left_vec()?);

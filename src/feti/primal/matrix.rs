@@ -1,5 +1,6 @@
 //! S_Π of the bodies: the sum of the subdomains' matrices Σ, formed by the rank that owns the body.
 
+use petsc::PetscInt;
 use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
@@ -182,17 +183,18 @@ impl PrimalMatrix {
     }
 
     /// All entries as (global row, global column, value); repeated ones are not added up.
-    pub fn triplets(&self) -> Vec<(i32, i32, f64)> {
-        let first = self.first as i32;
+    pub fn triplets(&self) -> Vec<(PetscInt, PetscInt, f64)> {
+        let first = self.first as PetscInt;
         let mut out = Vec::new();
         for (dofs, values) in self.of_body(&(0..self.shifts.len())) {
             for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
-                let entry = |(&j, &v): (&u32, &f64)| (first + i as i32, first + j as i32, v);
+                let entry =
+                    |(&j, &v): (&u32, &f64)| (first + i as PetscInt, first + j as PetscInt, v);
                 out.extend(dofs.iter().zip(row).map(entry));
             }
         }
         let shifts = self.shifts(&(0..self.shifts.len()));
-        out.extend(shifts.map(|(i, v)| (first + i as i32, first + i as i32, v)));
+        out.extend(shifts.map(|(i, v)| (first + i as PetscInt, first + i as PetscInt, v)));
         out
     }
 }

@@ -23,14 +23,14 @@ use base::linalg::sorted::distinct;
 use parallel::clock::{self, Phase};
 use parallel::exchange::sum_all;
 use parallel::halo::Halo;
-use petsc::{Comm, Ksp, Mat, MatFlag, Session, ShellPc, Vec as PetscVec};
+use petsc::{Comm, Ksp, Mat, MatFlag, PetscInt, Session, ShellPc, Vec as PetscVec};
 
 /// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix. A factorisation that is
 /// worse is iterated upon as well.
 pub const EXACT: f64 = 1e-13;
 
 /// Largest number of iterations around a solver that is no factorisation.
-const ITERATIONS: i32 = 1000;
+const ITERATIONS: PetscInt = 1000;
 
 /// The scaled matrix D⁻¹ GᵀQG D⁻¹, D² its diagonal, and its solver.
 pub struct Distributed {
@@ -107,18 +107,20 @@ impl Distributed {
             let at = needed.binary_search(&c);
             of_needed[at.expect("entries are in columns of rows")]
         };
-        let mut triplets: Vec<(i32, i32, f64)> = Vec::new();
+        let mut triplets: Vec<(PetscInt, PetscInt, f64)> = Vec::new();
         for &i in &needed {
             let (col, val) = here.row(i as usize);
             let entries = col.iter().zip(val).filter(|e| *e.1 != 0.0);
             let left = scale_of(i);
-            triplets.extend(entries.map(|(&j, v)| (i as i32, j as i32, v * left * scale_of(j))));
+            triplets.extend(
+                entries.map(|(&j, v)| (i as PetscInt, j as PetscInt, v * left * scale_of(j))),
+            );
         }
         for c in own.clone() {
             // One column of each motion that nothing holds is held, which does not change the solution for right-hand
             // sides in the range of the matrix.
             let held = dropped.binary_search(&(c as u32)).is_ok();
-            triplets.push((c as i32, c as i32, f64::from(u8::from(held))));
+            triplets.push((c as PetscInt, c as PetscInt, f64::from(u8::from(held))));
         }
         let matrix = Mat::from_triplets(session, Comm::World, own.len(), own.len(), &triplets)?;
         matrix.set_flag(MatFlag::Symmetric)?;

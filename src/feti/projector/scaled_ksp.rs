@@ -9,7 +9,7 @@ use super::gram::{scale_to_unit_diagonal, Gram};
 use super::refined::probe;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
-use petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
+use petsc::{Comm, Ksp, Mat, PetscInt, Session, Vec as PetscVec};
 
 /// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹; D² is the diagonal of Gᵀ Q G. The scaling is needed with Q = M⁻¹: the rows
 /// of stiff and soft bodies differ by the square of the jump in ρ.
@@ -56,13 +56,13 @@ impl ScaledKsp {
         let held = |i: usize, j: u32| {
             i == j as usize && (nothing[i] || gram.dropped.binary_search(&j).is_ok())
         };
-        let mut triplets: Vec<(i32, i32, f64)> = Vec::with_capacity(a.nnz());
+        let mut triplets: Vec<(PetscInt, PetscInt, f64)> = Vec::with_capacity(a.nnz());
         for i in 0..r {
             let (col, val) = a.row(i);
             for (&j, &v) in col.iter().zip(val) {
                 let v = if held(i, j) { v + 1.0 } else { v };
                 if v != 0.0 || i == j as usize {
-                    triplets.push((i as i32, j as i32, v));
+                    triplets.push((i as PetscInt, j as PetscInt, v));
                 }
             }
         }

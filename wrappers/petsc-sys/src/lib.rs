@@ -20,11 +20,11 @@ pub type PetscErrorCode = c_int;
 include!(concat!(env!("OUT_DIR"), "/bindings.rs"));
 
 /// PETSc chooses the value.
-pub const PETSC_DECIDE: c_int = -1;
+pub const PETSC_DECIDE: PetscInt = -1;
 /// PETSc computes the value.
-pub const PETSC_DETERMINE: c_int = -1;
-/// Keep the present or the default value.
-pub const PETSC_DEFAULT: c_int = -2;
+pub const PETSC_DETERMINE: PetscInt = -1;
+/// Keep the present value; its name was PETSC_DEFAULT up to 3.21.
+pub const PETSC_CURRENT: PetscInt = -2;
 
 /// Error in external code; a macro in 3.18, a member of an enum later, the same number in all.
 pub const PETSC_ERR_LIB: c_int = 76;

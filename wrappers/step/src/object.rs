@@ -1,5 +1,6 @@
 //! The object behind `FetiFetiStep`: the stepper of a scene, and the load step that it has solved last.
 
+use petsc::PetscInt;
 use std::ffi::{CString, OsStr};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -134,7 +135,7 @@ impl Steps {
     }
 
     /// The body of this number.
-    pub fn body(&self, body: i32) -> Result<(usize, &Body)> {
+    pub fn body(&self, body: PetscInt) -> Result<(usize, &Body)> {
         let bodies = &self.stepper()?.scene().bodies;
         let found = usize::try_from(body)
             .ok()
@@ -148,7 +149,7 @@ impl Steps {
     }
 
     /// The displacements at the nodes of a body. Collective.
-    pub fn displacements(&self, body: i32) -> Result<Vec<f64>> {
+    pub fn displacements(&self, body: PetscInt) -> Result<Vec<f64>> {
         let (body, _) = self.body(body)?;
         let (solved, stepper) = (self.solved()?, self.stepper()?);
         let (local, u) = (&stepper.solver().problem().local, &solved.solution.u);

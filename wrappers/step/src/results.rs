@@ -1,5 +1,6 @@
 //! The functions that return the results of a load step.
 
+use petsc::PetscInt;
 use std::ffi::{c_char, c_int};
 
 use base::{Fault, Result};
@@ -9,9 +10,9 @@ use crate::life::Pointer;
 use crate::rows::ContactRow;
 
 #[no_mangle]
-unsafe extern "C" fn FetiFetiStepGetNumber(step: Pointer, number: *mut c_int) -> c_int {
+unsafe extern "C" fn FetiFetiStepGetNumber(step: Pointer, number: *mut PetscInt) -> c_int {
     alone(step, c"FetiFetiStepGetNumber", |o| {
-        put(number, o.solved()?.step as c_int);
+        put(number, o.solved()?.step as PetscInt);
         Ok(())
     })
 }
@@ -33,9 +34,9 @@ unsafe extern "C" fn FetiFetiStepGetEnergy(step: Pointer, energy: *mut f64) -> c
 }
 
 #[no_mangle]
-unsafe extern "C" fn FetiFetiStepGetIterations(step: Pointer, its: *mut c_int) -> c_int {
+unsafe extern "C" fn FetiFetiStepGetIterations(step: Pointer, its: *mut PetscInt) -> c_int {
     alone(step, c"FetiFetiStepGetIterations", |o| {
-        put(its, o.solved()?.solution.iterations as c_int);
+        put(its, o.solved()?.solution.iterations as PetscInt);
         Ok(())
     })
 }
@@ -54,9 +55,9 @@ unsafe extern "C" fn FetiFetiStepGetConvergedReason(
 }
 
 #[no_mangle]
-unsafe extern "C" fn FetiFetiStepGetBodies(step: Pointer, n: *mut c_int) -> c_int {
+unsafe extern "C" fn FetiFetiStepGetBodies(step: Pointer, n: *mut PetscInt) -> c_int {
     alone(step, c"FetiFetiStepGetBodies", |o| {
-        put(n, o.names.len() as c_int);
+        put(n, o.names.len() as PetscInt);
         Ok(())
     })
 }
@@ -64,16 +65,16 @@ unsafe extern "C" fn FetiFetiStepGetBodies(step: Pointer, n: *mut c_int) -> c_in
 #[no_mangle]
 unsafe extern "C" fn FetiFetiStepGetBody(
     step: Pointer,
-    body: c_int,
+    body: PetscInt,
     name: *mut *const c_char,
-    nodes: *mut c_int,
-    components: *mut c_int,
+    nodes: *mut PetscInt,
+    components: *mut PetscInt,
 ) -> c_int {
     alone(step, c"FetiFetiStepGetBody", |o| {
         let (number, body) = o.body(body)?;
         put(name, o.names[number].as_ptr());
-        put(nodes, body.mesh().n_nodes() as c_int);
-        put(components, body.components as c_int);
+        put(nodes, body.mesh().n_nodes() as PetscInt);
+        put(components, body.components as PetscInt);
         Ok(())
     })
 }
@@ -81,8 +82,8 @@ unsafe extern "C" fn FetiFetiStepGetBody(
 #[no_mangle]
 unsafe extern "C" fn FetiFetiStepGetCoordinates(
     step: Pointer,
-    body: c_int,
-    n: c_int,
+    body: PetscInt,
+    n: PetscInt,
     x: *mut f64,
 ) -> c_int {
     alone(step, c"FetiFetiStepGetCoordinates", |o| {
@@ -96,8 +97,8 @@ unsafe extern "C" fn FetiFetiStepGetCoordinates(
 #[no_mangle]
 unsafe extern "C" fn FetiFetiStepGetDisplacements(
     step: Pointer,
-    body: c_int,
-    n: c_int,
+    body: PetscInt,
+    n: PetscInt,
     u: *mut f64,
 ) -> c_int {
     together(step, c"FetiFetiStepGetDisplacements", |o| {
@@ -109,19 +110,19 @@ unsafe extern "C" fn FetiFetiStepGetDisplacements(
 #[no_mangle]
 unsafe extern "C" fn FetiFetiStepGetContact(
     step: Pointer,
-    n: *mut c_int,
+    n: *mut PetscInt,
     rows: *mut *const ContactRow,
 ) -> c_int {
     together(step, c"FetiFetiStepGetContact", |o| {
         let found = o.rows()?;
-        put(n, found.len() as c_int);
+        put(n, found.len() as PetscInt);
         put(rows, found.as_ptr());
         Ok(())
     })
 }
 
 /// Copies values to an array of C with room for `n` numbers.
-fn fill(values: &[f64], n: c_int, to: *mut f64, what: &str) -> Result<()> {
+fn fill(values: &[f64], n: PetscInt, to: *mut f64, what: &str) -> Result<()> {
     if n as usize != values.len() || (to.is_null() && n > 0) {
         return Err(Fault::Sizes.error(format!(
             "there is room for {n} {what}, expected {}",

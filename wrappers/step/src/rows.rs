@@ -1,22 +1,22 @@
 //! Rows between bodies as C sees them.
 
+use petsc::PetscInt;
 use std::collections::HashMap;
-use std::ffi::c_int;
 
 use fetifeti::problem::{BodyNode, RowSource};
 use fetifeti::solution::{RowState, SolvedRow};
 
 /// A row holds, or a node of it: FETIFETI_OPEN and the others of `wrappers/step/fetifeti_step.h`.
-const OPEN: c_int = 0;
-const HOLDS: c_int = 1;
-const STICKS: c_int = 2;
-const SLIPS: c_int = 3;
+const OPEN: PetscInt = 0;
+const HOLDS: PetscInt = 1;
+const STICKS: PetscInt = 2;
+const SLIPS: PetscInt = 3;
 
 /// FetiFetiStepRow of `wrappers/step/fetifeti_step.h`.
 #[repr(C)]
 pub struct ContactRow {
-    body: [c_int; 2],
-    node: [c_int; 2],
+    body: [PetscInt; 2],
+    node: [PetscInt; 2],
     x: [f64; 3],
     normal: [f64; 3],
     multiplier: f64,
@@ -24,9 +24,9 @@ pub struct ContactRow {
     area: f64,
     friction: [f64; 3],
     slip: [f64; 3],
-    inequality: c_int,
-    active: c_int,
-    state: c_int,
+    inequality: PetscInt,
+    active: PetscInt,
+    state: PetscInt,
 }
 
 impl ContactRow {
@@ -34,8 +34,8 @@ impl ContactRow {
     fn new(row: &SolvedRow, tangential: &[SolvedRow]) -> ContactRow {
         let members = row.label.members;
         let mut out = ContactRow {
-            body: members.map(|m| m.map_or(-1, |m| m.body as c_int)),
-            node: members.map(|m| m.map_or(-1, |m| m.node as c_int)),
+            body: members.map(|m| m.map_or(-1, |m| m.body as PetscInt)),
+            node: members.map(|m| m.map_or(-1, |m| m.node as PetscInt)),
             x: row.label.point,
             normal: row.normal(),
             multiplier: row.multiplier,

@@ -14,12 +14,12 @@ use super::system::AssembledSystem;
 use super::unknowns::Trace;
 use base::Result;
 use parallel::exchange::sum_all;
-use petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
+use petsc::{Comm, Mat, MatFlag, PetscInt, Scatter, Session, Vec as PetscVec};
 
 /// A row of K.
 struct KRow {
-    row: i32,
-    cols: Vec<i32>,
+    row: PetscInt,
+    cols: Vec<PetscInt>,
     vals: Vec<f64>,
 }
 
@@ -34,11 +34,11 @@ pub struct Reduced {
     reference: f64,
     f: PetscVec,
     /// The unknowns in rows.
-    unknowns: Vec<i32>,
+    unknowns: Vec<PetscInt>,
     /// Rows of K on this rank that change with the set: (index among the unknowns in rows, row).
     touched: Vec<(Option<usize>, KRow)>,
     /// The columns of those rows, and the plan that communicates u there.
-    near: Vec<i32>,
+    near: Vec<PetscInt>,
     scatter: Scatter,
     near_u: PetscVec,
     /// The rigid motions for the preconditioner.
@@ -56,15 +56,15 @@ impl Reduced {
         rows: &Inequalities,
         kernel: NearKernel,
     ) -> Result<Reduced> {
-        let unknowns: Vec<i32> = rows.unknowns.iter().map(|&u| u as i32).collect();
+        let unknowns: Vec<PetscInt> = rows.unknowns.iter().map(|&u| u as PetscInt).collect();
         let trace = Trace::new(rows, &system.b);
         let range = system.a.ownership_range()?;
-        let index = |g: i32| unknowns.binary_search(&g).ok();
+        let index = |g: PetscInt| unknowns.binary_search(&g).ok();
         let mut touched = Vec::new();
         let mut all = Vec::with_capacity(range.len());
         for row in range.clone() {
             let (cols, vals) = system.a.row(row)?;
-            let row = row as i32;
+            let row = row as PetscInt;
             if cols.iter().any(|&c| index(c).is_some()) {
                 touched.push((
                     index(row),
@@ -77,14 +77,14 @@ impl Reduced {
             }
             let own = cols.iter().filter(|&&c| range.contains(&(c as usize)));
             let own = own.count();
-            all.push([own as i32, (cols.len() - own) as i32]);
+            all.push([own as PetscInt, (cols.len() - own) as PetscInt]);
         }
         // Without inequalities there is one set only, and its matrix is K.
         let a = match rows.len() {
             0 => system.a.clone(),
             _ => pattern(session, system, rows, &trace, &touched, &all)?,
         };
-        let mut near: Vec<i32> = touched.iter().flat_map(|(_, r)| r.cols.clone()).collect();
+        let mut near: Vec<PetscInt> = touched.iter().flat_map(|(_, r)| r.cols.clone()).collect();
         near.sort_unstable();
         near.dedup();
         let near_u = PetscVec::seq(session, near.len())?;
@@ -125,10 +125,10 @@ impl Reduced {
     /// # Errors
     /// PETSc's.
     pub fn update(&self, groups: &ActiveGroups, entries: &[(usize, usize, f64)]) -> Result<()> {
-        let mine: Vec<i32> = self.touched.iter().map(|(_, row)| row.row).collect();
+        let mine: Vec<PetscInt> = self.touched.iter().map(|(_, row)| row.row).collect();
         self.a.zero_rows(&mine)?;
         // The lowest unknown of the group of this one.
-        let lead = |g: i32| match self.unknowns.binary_search(&g) {
+        let lead = |g: PetscInt| match self.unknowns.binary_search(&g) {
             Ok(k) => groups.lead[k].map(|lead| self.unknowns[lead]),
             Err(_) => Some(g),
         };
@@ -140,7 +140,7 @@ impl Reduced {
             }
             let Some(to) = lead(row.row) else { continue };
             let entries = row.cols.iter().zip(&row.vals);
-            let (cols, vals): (Vec<i32>, Vec<f64>) = entries
+            let (cols, vals): (Vec<PetscInt>, Vec<f64>) = entries
                 .filter_map(|(&c, &v)| lead(c).map(|c| (c, v)))
                 .unzip();
             self.a.add_values(&[to], &cols, &vals)?;
@@ -224,7 +224,7 @@ impl Reduced {
         let mut out = vec![0.0; self.unknowns.len()];
         for (k, row) in &self.touched {
             let Some(k) = k else { continue };
-            let at = |c: i32| near[self.near.binary_search(&c).expect("columns were listed")];
+            let at = |c: PetscInt| near[self.near.binary_search(&c).expect("columns were listed")];
             let ku = row.cols.iter().zip(&row.vals).map(|(&c, v)| v * at(c));
             out[*k] = f[row.row as usize - start] - ku.sum::<f64>();
         }
@@ -264,27 +264,27 @@ fn pattern(
     rows: &Inequalities,
     trace: &Trace,
     touched: &[(Option<usize>, KRow)],
-    lengths: &[[i32; 2]],
+    lengths: &[[PetscInt; 2]],
 ) -> Result<Mat> {
-    let unknowns: Vec<i32> = rows.unknowns.iter().map(|&u| u as i32).collect();
-    let index = |g: i32| unknowns.binary_search(&g).ok();
+    let unknowns: Vec<PetscInt> = rows.unknowns.iter().map(|&u| u as PetscInt).collect();
+    let index = |g: PetscInt| unknowns.binary_search(&g).ok();
     let partners = rows.lower_partners();
     let room = Room::new(session.comm(), &partners, trace, lengths);
     let (n, range) = (system.a.size()?.0, system.a.ownership_range()?);
     let couples = couples(rows, &partners);
-    let mut d: Vec<i32> = lengths.iter().map(|r| r[0]).collect();
-    let mut o: Vec<i32> = lengths.iter().map(|r| r[1]).collect();
+    let mut d: Vec<PetscInt> = lengths.iter().map(|r| r[0]).collect();
+    let mut o: Vec<PetscInt> = lengths.iter().map(|r| r[1]).collect();
     for (k, row) in touched {
         let i = row.row as usize - range.start;
         let springs = k.map_or(0, |k| couples.get(&k).map_or(0, Vec::len));
         let most = room.of(*k, row.cols.len()) + springs;
-        d[i] = most.min(range.len()) as i32;
-        o[i] = most.min(n - range.len()) as i32;
+        d[i] = most.min(range.len()) as PetscInt;
+        o[i] = most.min(n - range.len()) as PetscInt;
     }
     let a = Mat::preallocated(session, Comm::World, range.len(), range.len(), &d, &o)?;
     // The columns in which a row may get entries: those of K, and the lowest unknowns of their groups.
     for (k, row) in touched {
-        let mut cols: Vec<i32> = Vec::new();
+        let mut cols: Vec<PetscInt> = Vec::new();
         for &c in &row.cols {
             match index(c) {
                 Some(j) => cols.extend(partners[j].iter().map(|&p| unknowns[p])),
@@ -304,7 +304,7 @@ fn pattern(
         }
     }
     for &(k, _) in trace.mine() {
-        let cols: Vec<i32> = couples
+        let cols: Vec<PetscInt> = couples
             .get(&k)
             .into_iter()
             .flatten()
@@ -314,9 +314,9 @@ fn pattern(
     }
     let mut next = touched.iter().map(|(_, row)| row.row).peekable();
     for row in range {
-        if next.next_if_eq(&(row as i32)).is_none() {
+        if next.next_if_eq(&(row as PetscInt)).is_none() {
             let (cols, vals) = system.a.row(row)?;
-            a.add_values(&[row as i32], &cols, &vals)?;
+            a.add_values(&[row as PetscInt], &cols, &vals)?;
         }
     }
     a.assemble()?;
@@ -364,11 +364,11 @@ impl Room {
         comm: &SimpleCommunicator,
         partners: &[Vec<usize>],
         trace: &Trace,
-        lengths: &[[i32; 2]],
+        lengths: &[[PetscInt; 2]],
     ) -> Room {
         let mut length = vec![0.0; partners.len()];
         for &(k, i) in trace.mine() {
-            length[k] = f64::from(lengths[i][0] + lengths[i][1]);
+            length[k] = (lengths[i][0] + lengths[i][1]) as f64;
         }
         sum_all(comm, &mut length);
         let mut sum = vec![0; partners.len()];

@@ -12,7 +12,7 @@ use super::system::AssembledSystem;
 use super::unknowns::Trace;
 use base::linalg::twice::Twice;
 use base::Result;
-use petsc::{Ksp, Scatter, Session, Vec as PetscVec};
+use petsc::{Ksp, PetscInt, Scatter, Session, Vec as PetscVec};
 
 /// Maximal number of rounds.
 const ROUNDS: usize = 60;
@@ -29,7 +29,7 @@ pub struct Refiner<'a> {
     system: &'a AssembledSystem,
     trace: &'a Trace,
     /// Columns of this rank's rows that other ranks own, increasing, and the plan that communicates u there.
-    ghosts: Vec<i32>,
+    ghosts: Vec<PetscInt>,
     scatter: Scatter,
     near: PetscVec,
 }
@@ -57,7 +57,7 @@ impl<'a> Refiner<'a> {
         trace: &'a Trace,
     ) -> Result<Refiner<'a>> {
         let range = system.a.ownership_range()?;
-        let mut ghosts: Vec<i32> = Vec::new();
+        let mut ghosts: Vec<PetscInt> = Vec::new();
         for row in range.clone() {
             let cols = system.a.row(row)?.0;
             ghosts.extend(cols.iter().filter(|&&c| !range.contains(&(c as usize))));

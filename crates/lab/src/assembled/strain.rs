@@ -12,7 +12,7 @@ use base::Result;
 use fetifeti::Subdomain;
 use parallel::contiguous_share;
 use parallel::exchange::sum_all;
-use petsc::{Scatter, Session, Vec as PetscVec};
+use petsc::{PetscInt, Scatter, Session, Vec as PetscVec};
 
 /// √(wᵀ K w), whatever rigid motions w has; K is that of `system`. Collective.
 ///
@@ -58,7 +58,7 @@ pub fn values(
     let terms: Vec<(Vec<(u64, f64)>, f64)> =
         dofs().map(|&dof| layout.terms(layout.index(dof))).collect();
     let places = terms.iter().flat_map(|(list, _)| list);
-    let places: Vec<i32> = places.map(|t| t.0 as i32).collect();
+    let places: Vec<PetscInt> = places.map(|t| t.0 as PetscInt).collect();
     let near = PetscVec::seq(session, places.len())?;
     Scatter::new(w, &places, &near)?.forward(w, &near)?;
     let near = near.array()?;

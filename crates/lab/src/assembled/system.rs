@@ -6,7 +6,7 @@
 use base::Result;
 use fetifeti::Subdomain;
 use parallel::contiguous_share;
-use petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
+use petsc::{Comm, Mat, MatFlag, PetscInt, Scatter, Session, Vec as PetscVec};
 use scene::Scene;
 
 use super::layout::UnknownLayout;
@@ -181,9 +181,9 @@ pub fn load(
 }
 
 /// The place in the layout of every dof of the subdomains.
-fn places(subdomains: &[Subdomain], layout: &UnknownLayout) -> Vec<i32> {
+fn places(subdomains: &[Subdomain], layout: &UnknownLayout) -> Vec<PetscInt> {
     let dofs = subdomains.iter().flat_map(|s| &s.dofs);
-    dofs.map(|&dof| layout.index(dof) as i32).collect()
+    dofs.map(|&dof| layout.index(dof) as PetscInt).collect()
 }
 
 /// ‖f‖₂ over the components of u. Collective.
@@ -199,7 +199,7 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &UnknownLayout) -
 /// The subdomains of one rank, merged into one: the subdomain of PETSc's domain decompositions.
 struct MergedSubdomain {
     /// Global unknown of each local one, increasing.
-    unknowns: Vec<i32>,
+    unknowns: Vec<PetscInt>,
     /// The component of each unknown.
     fields: Vec<usize>,
     k: Mat,
@@ -207,7 +207,7 @@ struct MergedSubdomain {
 }
 
 /// u at the dofs of a subdomain in terms of local unknowns: (unknown, coefficient) pairs and an offset.
-type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
+type RankRows = Vec<(Vec<(PetscInt, f64)>, f64)>;
 
 impl MergedSubdomain {
     /// The load of all ranks, and the norm that residuals are relative to; `mine` are the subdomains of this one.
@@ -239,16 +239,16 @@ impl MergedSubdomain {
     }
 
     fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<MergedSubdomain> {
-        let mut unknowns: Vec<i32> = Vec::new();
+        let mut unknowns: Vec<PetscInt> = Vec::new();
         for &dof in subdomains.iter().flat_map(|s| &s.dofs) {
-            unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as i32));
-            unknowns.extend(all.void_beside(dof).0.iter().map(|&v| v as i32));
+            unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as PetscInt));
+            unknowns.extend(all.void_beside(dof).0.iter().map(|&v| v as PetscInt));
         }
         unknowns.sort_unstable();
         unknowns.dedup();
         let find = |g: u64| {
-            let found = unknowns.binary_search(&(g as i32));
-            found.expect("every unknown was listed") as i32
+            let found = unknowns.binary_search(&(g as PetscInt));
+            found.expect("every unknown was listed") as PetscInt
         };
         let local = |s: &Subdomain| -> RankRows {
             let terms = s.dofs.iter().map(|&dof| all.terms(dof));
@@ -261,11 +261,11 @@ impl MergedSubdomain {
             let local = local(s);
             for (i, (rows, _)) in local.iter().enumerate() {
                 let cols = s.k.row(i).0.iter().map(|&j| local[j as usize].0.len());
-                let most = cols.sum::<usize>() as i32;
+                let most = cols.sum::<usize>() as PetscInt;
                 rows.iter().for_each(|(row, _)| room[*row as usize] += most);
             }
         }
-        room.iter_mut().for_each(|r| *r = (*r).min(n as i32));
+        room.iter_mut().for_each(|r| *r = (*r).min(n as PetscInt));
         let k = Mat::preallocated(session, Comm::Own, n, n, &room, &[])?;
         let mut f = vec![0.0; n];
         let (mut cols, mut vals) = (Vec::new(), Vec::new());
@@ -303,7 +303,7 @@ impl MergedSubdomain {
         let fields = match (unknowns.first(), unknowns.last()) {
             (Some(&first), Some(&last)) => {
                 let places = all.places(first as usize..last as usize + 1);
-                let place = |g: &i32| places[(g - first) as usize] as usize;
+                let place = |g: &PetscInt| places[(g - first) as usize] as usize;
                 unknowns.iter().map(|g| place(g) % components).collect()
             }
             _ => Vec::new(),

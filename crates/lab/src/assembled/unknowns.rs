@@ -6,7 +6,7 @@ use super::rows::Inequalities;
 use base::Result;
 use mpi::topology::SimpleCommunicator;
 use parallel::exchange::sum_all;
-use petsc::{Scatter, Session, Vec as PetscVec};
+use petsc::{PetscInt, Scatter, Session, Vec as PetscVec};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -146,7 +146,7 @@ impl<'a> Unknowns<'a> {
         let u = PetscVec::mpi(session, share.len())?;
         let places: Vec<AffineUnknown> = share.map(|unknown| self.of(unknown as u64)).collect();
         let known = places.iter().filter_map(|(lead, _)| *lead);
-        let leads: Vec<i32> = known.map(|lead| lead as i32).collect();
+        let leads: Vec<PetscInt> = known.map(|lead| lead as PetscInt).collect();
         let values = PetscVec::seq(session, leads.len())?;
         Scatter::new(v, &leads, &values)?.forward(v, &values)?;
         let values = values.array()?;

@@ -16,7 +16,7 @@ use crate::assembled::system::{AssembledSystem, MatrixFormat};
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
 use parallel::meter::{memory, timed};
-use petsc::{Comm, Is, Ksp, Mat, Session};
+use petsc::{Comm, Is, Ksp, Mat, PetscInt, Session};
 use scene::Scene;
 
 /// The solver of a baseline with its operator and options, and the solver that iterates. The two differ for KSPFETIDP,
@@ -54,10 +54,10 @@ fn tell(
         "fetidp" => ksp.fetidp_inner_bddc()?,
         _ => ksp.pc()?,
     };
-    let list = |c: usize| -> Vec<i32> {
+    let list = |c: usize| -> Vec<PetscInt> {
         let of = system.fields.iter().enumerate();
         of.filter(|(_, f)| **f == c)
-            .map(|(i, _)| i as i32)
+            .map(|(i, _)| i as PetscInt)
             .collect()
     };
     let sets: Result<Vec<Is>> = (0..scene.components())

@@ -19,7 +19,7 @@ fn sparse_and_dense_sums_and_triplets_are_the_same_matrix() {
     for body in [0..4, 4..7] {
         let (dense, sparse) = (matrix.dense(&body), matrix.sparse(&body));
         for (i, j) in (0..body.len()).flat_map(|i| (0..body.len()).map(move |j| (i, j))) {
-            let at = |i: usize| (100 + body.start + i) as i32;
+            let at = |i: usize| (100 + body.start + i) as petsc::PetscInt;
             let here = triplets.iter().filter(|t| (t.0, t.1) == (at(i), at(j)));
             let sum: f64 = here.map(|t| t.2).sum();
             assert!((dense.get(i, j) - sum).abs() < 1e-14);

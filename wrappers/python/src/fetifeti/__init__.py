@@ -20,7 +20,7 @@ from .scene import InputError, NotConvergedError, ProgramError, Result, Scene, S
 from .vtu import Fields, read_vtu
 
 if TYPE_CHECKING:
-    from .ksp import inner_ksp, register, set_body, set_body_is, set_body_label
+    from .ksp import inner_ksp, pc_ksp, register, set_body, set_body_is, set_body_label, set_primal_dofs
     from .calls import ContactStep, Error
     from .contact import ContactFriction, RowKind, RowState
     from .solver import MortarFriction, MortarResult, Solver
@@ -31,7 +31,9 @@ _PLACES = {
     "set_body": "ksp",
     "set_body_is": "ksp",
     "set_body_label": "ksp",
+    "set_primal_dofs": "ksp",
     "inner_ksp": "ksp",
+    "pc_ksp": "ksp",
     "Error": "calls",
     "Solver": "solver",
     "RowKind": "contact",

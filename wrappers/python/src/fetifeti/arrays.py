@@ -5,15 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from petsc4py import PETSc
+
+INT = np.dtype(PETSc.IntType)
+"""PetscInt."""
 
 
 def integers(values: Any, what: str, shape: tuple[int | None, ...] = (None,)) -> np.ndarray:
-    """A contiguous int32 array.
+    """A contiguous array of PetscInt.
 
     Parameters
     ----------
     values : array_like of int
-        Any integer type whose values fit in 32 bits.
+        Any integer type whose values fit.
     what : str
         Its name in errors.
     shape : tuple
@@ -22,17 +26,17 @@ def integers(values: Any, what: str, shape: tuple[int | None, ...] = (None,)) ->
     Raises
     ------
     TypeError, ValueError
-        Not integers; another shape; a number of more than 32 bits.
+        Not integers; another shape; a number that PetscInt does not hold.
     """
     array = _shaped(values, what, shape)
     if array.size == 0:
-        return np.zeros(array.shape, np.int32)
+        return np.zeros(array.shape, INT)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{what} has the type {array.dtype}, expected integers")
-    bad = array[(array > np.iinfo(np.int32).max) | (array < np.iinfo(np.int32).min)]
+    bad = array[(array > np.iinfo(INT).max) | (array < np.iinfo(INT).min)]
     if bad.size:
-        raise ValueError(f"{what} has the number {bad[0]}, expected one of 32 bits")
-    return np.ascontiguousarray(array, np.int32)
+        raise ValueError(f"{what} has the number {bad[0]}, expected one of {8 * INT.itemsize} bits")
+    return np.ascontiguousarray(array, INT)
 
 
 def reals(values: Any, what: str, shape: tuple[int | None, ...] = (None,)) -> np.ndarray:

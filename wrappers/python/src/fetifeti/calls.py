@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from .arrays import INT
 from .library import LIBRARY, STEP_LIBRARY, load
 
 DECIDE = -1
@@ -18,7 +19,10 @@ DECIDE = -1
 ERR_USER = 83
 """PETSC_ERR_USER."""
 
-_I, _D, _P, _S = ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_char_p
+_C, _D, _P, _S = ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_char_p
+
+PETSC_INT = _I = ctypes.c_int64 if INT.itemsize == 8 else ctypes.c_int
+"""PetscInt, as ctypes has it."""
 
 # Types of the arguments, in their order; handles, arrays and places for results are pointers.
 SIGNATURES: dict[str, list[Any]] = {
@@ -26,8 +30,10 @@ SIGNATURES: dict[str, list[Any]] = {
     "KSPFETIFETISetBody": [_P, _I],
     "KSPFETIFETISetBodyIS": [_P, _P],
     "KSPFETIFETISetBodyLabel": [_P, _S],
+    "KSPFETIFETISetPrimalDofs": [_P, _P],
     "KSPFETIFETIGetInnerKSP": [_P, _P],
-    "FetiFetiCreateFortran": [_I, _P],
+    "PCFETIFETIGetKSP": [_P, _P],
+    "FetiFetiCreateFortran": [_C, _P],
     "FetiFetiDestroy": [_P],
     "FetiFetiReset": [_P],
     "FetiFetiSetOptionsPrefix": [_P, _S],
@@ -73,7 +79,7 @@ SIGNATURES: dict[str, list[Any]] = {
 }
 
 STEP_SIGNATURES: dict[str, list[Any]] = {
-    "FetiFetiStepCreateFortran": [_I, _S, _P],
+    "FetiFetiStepCreateFortran": [_C, _S, _P],
     "FetiFetiStepDestroy": [_P],
     "FetiFetiStepNext": [_P, _P],
     "FetiFetiStepGetNumber": [_P, _P],
@@ -106,7 +112,7 @@ class ContactStep(ctypes.Structure):
     ]
 
 
-MONITOR = ctypes.CFUNCTYPE(_I, ctypes.POINTER(ContactStep), _P)
+MONITOR = ctypes.CFUNCTYPE(_C, ctypes.POINTER(ContactStep), _P)
 """The type of the function that the library calls after each step."""
 
 
@@ -132,15 +138,14 @@ class Error(PETSc.Error):
 
 @lru_cache(maxsize=None)
 def _library(file: str) -> ctypes.PyDLL:
-    if np.dtype(PETSc.IntType) != np.int32 or np.dtype(PETSc.ScalarType) != np.float64:
+    if np.dtype(PETSc.ScalarType) != np.float64:
         raise ImportError(
-            f"petsc4py has {np.dtype(PETSc.ScalarType)} numbers and {np.dtype(PETSc.IntType)} indices, "
-            "expected float64 and int32, with which fetifeti is built"
+            f"petsc4py has {np.dtype(PETSc.ScalarType)} numbers, expected float64, with which fetifeti is built"
         )
     library = load(file)
     for name, arguments in (SIGNATURES if file == LIBRARY else STEP_SIGNATURES).items():
         function = getattr(library, name)
-        function.argtypes, function.restype = arguments, _I
+        function.argtypes, function.restype = arguments, _C
     return library
 
 

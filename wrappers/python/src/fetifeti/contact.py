@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from petsc4py import PETSc
 
-from .arrays import csr, for_each, integers, reals
+from .arrays import INT, csr, for_each, integers, reals
 from .calls import DECIDE, ERR_USER, MONITOR, ContactStep, call
 
 
@@ -77,7 +77,7 @@ class Contact:
         """
         ia, ja, b = csr(rows, "rows")
         n = len(ia) - 1
-        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], np.int32)
+        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], INT)
         kinds = integers(kinds, "kind", (n,))
         call("FetiFetiSetContactRows", self._ff, n, ia, ja, b, for_each(gap, n, "gap"), kinds)
         self._rows = n
@@ -101,10 +101,10 @@ class Contact:
         row = np.concatenate([np.repeat(np.arange(n), np.diff(ia)) for _, ia, _, _ in parts] or [np.zeros(0, int)])
         order = np.argsort(row, kind="stable")
         join = lambda lists, kind: np.concatenate([*lists, np.zeros(0, kind)])[order].astype(kind)  # noqa: E731
-        matrix = join([np.full(len(ja), k, np.int32) for k, _, ja, _ in parts], np.int32)
-        ja, b = join([p[2] for p in parts], np.int32), join([p[3] for p in parts], np.float64)
-        ia = np.searchsorted(row[order], np.arange(n + 1)).astype(np.int32)
-        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], np.int32)
+        matrix = join([np.full(len(ja), k, INT) for k, _, ja, _ in parts], INT)
+        ja, b = join([p[2] for p in parts], INT), join([p[3] for p in parts], np.float64)
+        ia = np.searchsorted(row[order], np.arange(n + 1)).astype(INT)
+        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], INT)
         kinds, gap = integers(kinds, "kind", (n,)), for_each(gap, n, "gap")
         call("FetiFetiSetContactRowsByMatrix", self._ff, n, ia, matrix, ja, b, gap, kinds)
         self._rows = n
@@ -204,7 +204,7 @@ class Contact:
     def contact_friction(self) -> ContactFriction:
         """Forces of friction, slips and states of the rows and pairs of this rank."""
         n, dim = self._rows + self._pairs, self._components
-        out = ContactFriction(np.zeros((n, dim)), np.zeros((n, dim)), np.zeros(n, np.int32))
+        out = ContactFriction(np.zeros((n, dim)), np.zeros((n, dim)), np.zeros(n, INT))
         call("FetiFetiGetContactFriction", self._ff, n, dim, *out)
         return out
 

@@ -1,4 +1,4 @@
-"""The KSP type "fetifeti" in petsc4py."""
+"""The types "fetifeti" of KSP and PC in petsc4py."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .calls import call, ksp_at
 
 
 def register() -> None:
-    """Registers the KSP type: ``ksp.setType("fetifeti")`` and ``-ksp_type fetifeti`` work afterwards.
+    """Registers "fetifeti" as a type of KSP and PC: ``ksp.setType("fetifeti")`` and ``-ksp_type fetifeti`` work then.
 
     May be called several times. The operator must be a matrix of type "is" (MATIS). Calls FetiFetiInitializePackage.
 
@@ -49,6 +49,28 @@ def set_body_is(ksp: PETSc.KSP, bodies: Any) -> None:
 def set_body_label(ksp: PETSc.KSP, name: str) -> None:
     """Says that a label of the cells of a DMPlex names the bodies."""
     call("KSPFETIFETISetBodyLabel", ksp, name)
+
+
+def set_primal_dofs(ksp: PETSc.KSP, dofs: Any) -> None:
+    """Makes unknowns primal where subdomains of one body share them. Collective.
+
+    Parameters
+    ----------
+    ksp : PETSc.KSP
+        Of type "fetifeti".
+    dofs : PETSc.IS or array_like of int
+        Global numbers of unknowns, listed by any rank.
+    """
+    if not isinstance(dofs, PETSc.IS):
+        dofs = PETSc.IS().createGeneral(integers(dofs, "dofs"), comm=ksp.comm)
+    call("KSPFETIFETISetPrimalDofs", ksp, dofs)
+
+
+def pc_ksp(pc: PETSc.PC) -> PETSc.KSP:
+    """The KSP that a PC of type "fetifeti" applies: for `set_body` and its like."""
+    place = ctypes.c_void_p()
+    call("PCFETIFETIGetKSP", pc, ctypes.byref(place))
+    return ksp_at(place)
 
 
 def inner_ksp(ksp: PETSc.KSP) -> PETSc.KSP:

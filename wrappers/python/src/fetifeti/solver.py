@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 from petsc4py import PETSc
 
-from .arrays import csr, integers, reals
+from .arrays import INT, csr, integers, reals
 from .calls import ContactStep, Error, call, ksp_at
 from .contact import Contact, RowKind, _number
 from .surfaces import Surfaces
@@ -352,7 +352,7 @@ class Solver(Contact, Surfaces):
         return ksp_at(place)
 
     def _int(self, name: str) -> int:
-        place = np.zeros(1, np.int32)
+        place = np.zeros(1, INT)
         call(name, self._ff, place)
         return int(place[0])
 

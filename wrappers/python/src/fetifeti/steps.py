@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
-from .calls import Error, call
+from .arrays import INT
+from .calls import PETSC_INT, Error, call
 from .scene import InputError, NotConvergedError, ProgramError, Scene
 
 # FetiFetiStepRow.
 _ROW: list[tuple[Any, ...]] = [
-    ("body", "i4", (2,)),
-    ("node", "i4", (2,)),
+    ("body", INT, (2,)),
+    ("node", INT, (2,)),
     ("x", "f8", (3,)),
     ("normal", "f8", (3,)),
     ("multiplier", "f8"),
@@ -28,9 +29,9 @@ _ROW: list[tuple[Any, ...]] = [
     ("area", "f8"),
     ("friction", "f8", (3,)),
     ("slip", "f8", (3,)),
-    ("inequality", "i4"),
-    ("active", "i4"),
-    ("state", "i4"),
+    ("inequality", INT),
+    ("active", INT),
+    ("state", INT),
 ]
 
 # Errors as the program has them, by PETSc's code: PETSC_ERR_NOT_CONVERGED, PETSC_ERR_ARG_WRONG, PETSC_ERR_LIB.
@@ -70,10 +71,10 @@ class LoadStep:
 
     def __init__(self, steps: LoadSteps) -> None:
         self._steps = steps
-        self.number = int(steps._get("GetNumber", ctypes.c_int()))
+        self.number = int(steps._get("GetNumber", PETSC_INT()))
         self.time = float(steps._get("GetTime", ctypes.c_double()))
         self.energy = float(steps._get("GetEnergy", ctypes.c_double()))
-        self.iterations = int(steps._get("GetIterations", ctypes.c_int()))
+        self.iterations = int(steps._get("GetIterations", PETSC_INT()))
         reason, name = ctypes.c_int(), ctypes.c_char_p()
         call("FetiFetiStepGetConvergedReason", steps._handle, ctypes.byref(reason), ctypes.byref(name))
         self.reason, self.reason_name = reason.value, (name.value or b"").decode()
@@ -114,7 +115,7 @@ class LoadStep:
         ``slip``, how far it has slid on it in the load step; ``inequality``, False for ties; ``active``, True where
         the row holds; ``state``, a `RowState` as of `Solver`: open, holding, sticking or slipping.
         """
-        n, at = ctypes.c_int(), ctypes.c_void_p()
+        n, at = PETSC_INT(), ctypes.c_void_p()
         call("FetiFetiStepGetContact", self._present(), ctypes.byref(n), ctypes.byref(at))
         raw = np.dtype(_ROW, align=True)
         found = np.zeros(0, raw)
@@ -167,7 +168,7 @@ class LoadSteps(Iterator[LoadStep]):
             database.setValue(key, value)
         with _as_the_program():
             call("FetiFetiStepCreateFortran", self.comm.fortran, str(scene.path), ctypes.byref(self._handle))
-            self.bodies = [self._name(body) for body in range(self._get("GetBodies", ctypes.c_int()))]
+            self.bodies = [self._name(body) for body in range(self._get("GetBodies", PETSC_INT()))]
             if resume is not None:
                 try:
                     call("FetiFetiStepResume", self._handle, str(resume))
@@ -223,7 +224,7 @@ class LoadSteps(Iterator[LoadStep]):
 
     def _size(self, body: int) -> tuple[int, int]:
         """The nodes of a body, and the components of each."""
-        nodes, components = ctypes.c_int(), ctypes.c_int()
+        nodes, components = PETSC_INT(), PETSC_INT()
         call("FetiFetiStepGetBody", self._handle, body, None, ctypes.byref(nodes), ctypes.byref(components))
         return nodes.value, components.value
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arrays import for_each, integers, reals
+from .arrays import INT, for_each, integers, reals
 from .calls import call
 
 if TYPE_CHECKING:
@@ -52,12 +52,12 @@ class Surfaces:
             dofs = np.reshape(dofs, (-1, 1))
         dofs = integers(dofs, "dofs", (n, None))
         faces = [integers(face, f"face {k}") for k, face in enumerate(faces)]
-        start = np.concatenate([[0], np.cumsum([len(face) for face in faces])]).astype(np.int32)
-        nodes = np.concatenate([np.zeros(0, np.int32), *faces])
+        start = np.concatenate([[0], np.cumsum([len(face) for face in faces])]).astype(INT)
+        nodes = np.concatenate([np.zeros(0, INT), *faces])
         bad = nodes[(nodes < 0) | (nodes >= n)]
         if bad.size:
             raise ValueError(f"a face has node {bad[0]}, expected places in the list of {n} nodes, from 0")
-        place, components = np.zeros(1, np.int32), dofs.shape[1]
+        place, components = np.zeros(1, INT), dofs.shape[1]
         call(
             "FetiFetiAddSurface", self._ff, _number(matrix), dim, components, n, dofs, coordinates,
             len(faces), start, nodes, place,
@@ -105,8 +105,8 @@ class Surfaces:
         kind = _kind(kind)
         n = self._surfaces[first][0] if 0 <= first < len(self._surfaces) else 0
         gaps = None if gaps is None else for_each(gaps, n, "gaps")
-        without = None if without is None else integers(np.asarray(without).astype(np.int32), "without", (n,))
-        place = np.zeros(1, np.int32)
+        without = None if without is None else integers(np.asarray(without).astype(INT), "without", (n,))
+        place = np.zeros(1, INT)
         call("FetiFetiAddMortar", self._ff, first, second, kind, reach, adjust, gap, gaps, without, place)
         self._mortars.append((first, kind))
         return int(place[0])
@@ -178,7 +178,7 @@ class Surfaces:
         first, kind = self._first(number)
         n, components = self._surfaces[first]
         shape = (n,) if kind == INEQUALITY else (n, components)
-        out = MortarResult(np.zeros(shape), np.zeros(shape), np.zeros(n), np.zeros(n, np.int32))
+        out = MortarResult(np.zeros(shape), np.zeros(shape), np.zeros(n), np.zeros(n, INT))
         call("FetiFetiGetMortar", self._ff, number, n, *out)
         return out
 
