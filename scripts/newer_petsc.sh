@@ -125,12 +125,19 @@ export LD_LIBRARY_PATH=$PETSC_DIR/$arch/lib:$SLEPC_DIR/$arch/lib
 export PYTHONPATH=$python
 ENV
 
-# petsc4py, with a Cython of its own: Debian 12's is too old for it.
-if [ "$bits" = 32 ] && [ $fortran = 1 ] && [ ! -d "$python/petsc4py" ]; then
+# petsc4py for Debian's Python, with a Cython of its own: Debian 12's is too old for it.
+python3=/usr/bin/python3
+[ -x $python3 ] || python3=$(command -v python3)
+headers=$($python3 -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
+if [ "$bits" = 64 ] || [ $fortran = 0 ] || [ -d "$python/petsc4py" ]; then
+    :
+elif [ ! -e "$headers/Python.h" ]; then
+    echo "petsc4py is left out: $headers/Python.h is missing (Debian: python3-dev)."
+else
     tools=$folder/python-tools
     [ -e "$tools/bin/python" ] ||
         step "Installing Cython" "$folder/cython.log" bash -c "
-            python3 -m venv --system-site-packages '$tools' && '$tools/bin/pip' install 'cython>=3' setuptools wheel"
+            $python3 -m venv --system-site-packages '$tools' && '$tools/bin/pip' install 'cython>=3' setuptools wheel"
     step "Building petsc4py $petsc" "$folder/petsc4py.log" "$tools/bin/pip" install --no-deps --no-build-isolation \
         --no-binary petsc4py --target "$python" "petsc4py==$petsc"
 fi

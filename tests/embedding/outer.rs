@@ -104,13 +104,15 @@ fn every_way_of_looking() {
     let file = scratch.path("view");
     for solver in ["-ksp_type fetifeti", "-ksp_type fgmres -pc_type fetifeti"] {
         let view = format!("-ksp_view binary:{file} -ksp_view_pre ascii:{file}.txt");
-        let options = format!("{solver} {view} -malloc_debug -malloc_dump -objects_dump -log_view");
+        let options = format!("{solver} {view} -malloc_debug -malloc_dump -objects_dump");
         let out = program.with_plugin(2, &options);
         assert_eq!(out.code, 0, "{options}: {}", out.all());
         assert!(out.stdout.contains("ok"), "{}", out.all());
         for leak in ["bytes in", "The following objects were never freed"] {
             assert!(!out.all().contains(leak), "{options}: {}", out.all());
         }
+        // PETSc's own log is an object that 3.26 counts as left.
+        let out = program.with_plugin(2, &format!("{solver} -log_view"));
         for event in ["Tear", "Local", "Primal", "Coarse", "F", "M", "P"] {
             let name = format!("FetiFeti{event} ");
             assert!(out.stdout.contains(&name), "no {name}in {}", out.stdout);
