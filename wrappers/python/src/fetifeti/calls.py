@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any
 
@@ -116,6 +118,10 @@ MONITOR = ctypes.CFUNCTYPE(_C, ctypes.POINTER(ContactStep), _P)
 """The type of the function that the library calls after each step."""
 
 
+_HANDLER = ctypes.CFUNCTYPE(_C, _P, _C, _S, _S, _C, _C, _S, _P)
+_ERROR_INITIAL = 0
+
+
 class Error(PETSc.Error):
     """An error of the library or of PETSc under it.
 
@@ -157,14 +163,35 @@ def call(name: str, *arguments: Any) -> None:
     Error
         The function returned an error code.
     """
-    function = getattr(_library(STEP_LIBRARY if name in STEP_SIGNATURES else LIBRARY), name)
-    trace = PETSc.Error._traceback_
-    del trace[:]
-    code = function(*[_argument(a) for a in arguments])
+    library = _library(STEP_LIBRARY if name in STEP_SIGNATURES else LIBRARY)
+    with _listening(library) as said:
+        code = getattr(library, name)(*[_argument(a) for a in arguments])
     if code:
-        # petsc4py keeps what PETSc's error handler was given, the sentence last.
-        text = re.sub(r"^\[\d+\] ", "", trace[-1]) if trace else PETSc.Error(code).args[-1]
+        text = re.sub(r"^\[\d+\] ", "", said[-1]) if said else PETSc.Error(code).args[-1]
         raise Error(name, code, str(text))
+
+
+@contextmanager
+def _listening(library: ctypes.PyDLL) -> Iterator[list[str]]:
+    """What PETSc's error handler is given meanwhile, the sentence last."""
+    if hasattr(PETSc.Error, "_traceback_"):  # older versions of petsc4py keep it there
+        trace: list[str] = PETSc.Error._traceback_
+        del trace[:]
+        yield trace
+        return
+    said: list[str] = []
+
+    def listen(comm: Any, line: int, function: Any, file: Any, code: int, kind: int, text: Any, context: Any) -> int:
+        if kind == _ERROR_INITIAL:
+            said[:] = [text.decode(errors="replace")] if text else []
+        return code
+
+    handler = _HANDLER(listen)
+    library.PetscPushErrorHandler(handler, None)
+    try:
+        yield said
+    finally:
+        library.PetscPopErrorHandler()
 
 
 def _argument(a: Any) -> Any:
