@@ -5,8 +5,8 @@
 # the newest that belongs to it. Left are FOLDER/petsc-VERSION and FOLDER/slepc-VERSION and a file to be sourced,
 # FOLDER/env. What is already built stays. INDICES=64 in the environment: 64-bit indices, beside the others, with
 # FOLDER/env-64. With PETSc 3.23 and later come Fortran's modules, and petsc4py where indices have 32 bits.
-# MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; its PT-Scotch has 32-bit indices alone, and MUMPS
-# takes 64-bit ones as long as they fit into 32. Debian's hypre is too old for PETSc 3.22.
+# MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; PT-Scotch is left out with 64-bit indices, which
+# Debian's has not, and MUMPS takes them as long as they fit into 32. Debian's hypre is too old for PETSc 3.22.
 set -euo pipefail
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
