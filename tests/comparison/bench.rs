@@ -179,8 +179,15 @@ fn every_method_runs_in_every_round() {
         (case.facts.bodies, case.facts.subdomains, case.facts.dofs),
         (4, 8, 16 * 9)
     );
+    // From PETSc 3.21 on PCBDDC may have several subdomains on a rank.
+    let packed = names(&case.methods).contains(&("bddc", "packed", 2));
+    assert_eq!(packed, petsc::REPEATS);
+    let rest: Vec<_> = names(&case.methods)
+        .into_iter()
+        .filter(|n| n.1 != "packed")
+        .collect();
     assert_eq!(
-        names(&case.methods),
+        rest,
         [
             ("fetifeti", "threads", 1),
             ("fetifeti", "ranks", 2),

@@ -77,4 +77,14 @@ static inline PetscErrorCode FFIsRepeated(Mat mat, PetscBool *repeated)
 #endif
 }
 
+/* Allows it; an error before PETSc 3.21. */
+static inline PetscErrorCode FFAllowRepeated(Mat mat)
+{
+#if PETSC_VERSION_GE(3, 21, 0)
+  return MatISSetAllowRepeated(mat, PETSC_TRUE);
+#else
+  SETERRQ(PetscObjectComm((PetscObject)mat), PETSC_ERR_SUP, "PETSc has repeated entries of a MATIS from 3.21 on");
+#endif
+}
+
 #endif

@@ -132,7 +132,7 @@ const FUNCTIONS: &[&str] = &[
     "MatScale",
     "MatConvert",
     "MatCreateVecs",
-    "MatCreateIS",
+    "MatSetLocalToGlobalMapping",
     "MatISSetLocalMat",
     "MatISGetLocalMat",
     "MatISRestoreLocalMat",

@@ -284,6 +284,11 @@ int ff_is_repeated(Mat mat, int *repeated)
   return 0;
 }
 
+int ff_allow_repeated(Mat mat)
+{
+  return (int)FFAllowRepeated(mat);
+}
+
 /* ---- log, citations, printing ---- */
 
 int ff_counters(double counts[3])

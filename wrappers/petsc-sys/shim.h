@@ -63,6 +63,8 @@ int ff_partition(const char *prefix, PetscInt n, const PetscInt *row, const Pets
 /* Whether the local-to-global map of a MATIS may list a dof several times, once for each of several subdomains (PETSc
    3.21 and later). */
 int ff_is_repeated(Mat mat, int *repeated);
+/* Allows that, before the map is set. */
+int ff_allow_repeated(Mat mat);
 
 /* Whether any option begins with `start` (dash included). */
 int ff_options_any(const char *start, PetscBool *found);

@@ -49,7 +49,7 @@ pub use matis::AttachedNullSpace;
 pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
-pub use petsc_sys::PetscInt;
+pub use petsc_sys::{PetscInt, REPEATS};
 pub use scatter::Scatter;
 pub use session::version;
 pub use session::{max_memory, print_on_stderr, Comm, Session};

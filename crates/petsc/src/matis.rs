@@ -12,12 +12,14 @@ use petsc_sys::PetscInt;
 
 impl Mat {
     /// The square matrix Σ Rᵀ A_local R over the ranks. `local_to_global[i]` is the global number of local dof i, and
-    /// `owned` is the number of global dofs that this rank owns. Collective.
+    /// `owned` is the number of global dofs that this rank owns. With `repeated` several local dofs may have one
+    /// number, each in a subdomain of its own; PETSc 3.21 and later. Collective.
     pub fn unassembled(
         session: &Session,
         owned: usize,
         local_to_global: &[PetscInt],
         local: &Mat,
+        repeated: bool,
     ) -> Result<Mat> {
         let comm = session.raw_comm(Comm::World);
         let n = count(local_to_global.len())?;
@@ -33,19 +35,14 @@ impl Mat {
             ))
         })?;
         let owned = count(owned)?;
-        let mat = Mat::made(session, |raw| {
-            petsc!(MatCreateIS(
-                comm,
-                1,
-                owned,
-                owned,
-                sys::PETSC_DETERMINE,
-                sys::PETSC_DETERMINE,
-                map.raw(),
-                map.raw(),
-                raw
-            ))
-        })?;
+        let mat = Mat::made(session, |raw| petsc!(MatCreate(comm, raw)))?;
+        let rest = sys::PETSC_DETERMINE;
+        petsc!(MatSetSizes(mat.raw(), owned, owned, rest, rest))?;
+        petsc!(MatSetType(mat.raw(), c"is".as_ptr()))?;
+        if repeated {
+            petsc!(ff_allow_repeated(mat.raw()))?;
+        }
+        petsc!(MatSetLocalToGlobalMapping(mat.raw(), map.raw(), map.raw()))?;
         petsc!(MatISSetLocalMat(mat.raw(), local.raw()))?;
         mat.assemble()?;
         Ok(mat)

@@ -112,7 +112,7 @@ fn values(session: &Session) -> Result<()> {
     let edge = Mat::from_csr(session, &edge)?;
     let owned = if session.rank() == 0 { 2 } else { 1 };
     let rank = session.rank() as PetscInt;
-    let torn = Mat::unassembled(session, owned, &[rank, rank + 1], &edge)?;
+    let torn = Mat::unassembled(session, owned, &[rank, rank + 1], &edge, false)?;
     let whole = torn.convert("aij")?;
     let (u, v, w) = (torn.right_vec()?, torn.left_vec()?, torn.left_vec()?);
     u.set_random()?;

@@ -19,6 +19,10 @@ pub type PetscErrorCode = c_int;
 
 include!(concat!(env!("OUT_DIR"), "/bindings.rs"));
 
+/// Whether a MATIS may have several subdomains on a rank (`ff_allow_repeated`).
+pub const REPEATS: bool =
+    PETSC_VERSION_MAJOR > 3 || (PETSC_VERSION_MAJOR == 3 && PETSC_VERSION_MINOR >= 21);
+
 /// PETSc chooses the value.
 pub const PETSC_DECIDE: PetscInt = -1;
 /// PETSc computes the value.

@@ -17,8 +17,10 @@ use super::unknowns::Unknowns;
 pub enum MatrixFormat {
     /// One assembled matrix (AIJ), rows in equal shares.
     Assembled,
-    /// One matrix per part of the domain, unassembled (MATIS).
+    /// One matrix per part of the domain, unassembled (MATIS); a part is what a rank has.
     Unassembled,
+    /// Unassembled with a part per subdomain, as many on a rank as there are (MatISSetAllowRepeated).
+    Separate,
 }
 
 /// The weights in the mean of the copies of an unknown.
@@ -43,8 +45,8 @@ pub struct AssembledSystem {
 }
 
 impl AssembledSystem {
-    /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix; the
-    /// assembled format is converted from the unassembled one. Collective.
+    /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix unless
+    /// they are to be separate; the assembled format is converted from the unassembled one. Collective.
     ///
     /// # Errors
     /// As [`Scene::subdomain`], and PETSc's.
@@ -55,15 +57,17 @@ impl AssembledSystem {
         format: MatrixFormat,
     ) -> Result<AssembledSystem> {
         let mine = subdomains(session, scene)?;
-        let part = MergedSubdomain::new(session, &mine, unknowns)?;
+        let separate = format == MatrixFormat::Separate;
+        let part = RankMatrix::new(session, &mine, unknowns, separate)?;
         let (b, reference) = part.load(session, &mine, unknowns, format)?;
         drop(mine);
         let n = b.ownership_range().len();
-        let unassembled = Mat::unassembled(session, n, &part.unknowns, &part.k)?;
+        let (places, k) = (&part.unknowns, &part.k);
+        let unassembled = Mat::unassembled(session, n, places, k, separate)?;
         let fields = part.fields;
         let a = match format {
             MatrixFormat::Assembled => unassembled.convert("aij")?,
-            MatrixFormat::Unassembled => unassembled,
+            MatrixFormat::Unassembled | MatrixFormat::Separate => unassembled,
         };
         let held = unknowns.are_free() && scene.has_contact();
         a.set_flag(if held {
@@ -176,7 +180,7 @@ pub fn load(
     format: MatrixFormat,
 ) -> Result<(PetscVec, f64)> {
     let mine = subdomains(session, scene)?;
-    let part = MergedSubdomain::new(session, &mine, unknowns)?;
+    let part = RankMatrix::new(session, &mine, unknowns, format == MatrixFormat::Separate)?;
     part.load(session, &mine, unknowns, format)
 }
 
@@ -196,9 +200,9 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &UnknownLayout) -
     f.norm2()
 }
 
-/// The subdomains of one rank, merged into one: the subdomain of PETSc's domain decompositions.
-struct MergedSubdomain {
-    /// Global unknown of each local one, increasing.
+/// The subdomains of one rank as PETSc's domain decompositions take them: merged into one, or one after the other.
+struct RankMatrix {
+    /// Global unknown of each local one, increasing in each part.
     unknowns: Vec<PetscInt>,
     /// The component of each unknown.
     fields: Vec<usize>,
@@ -209,7 +213,7 @@ struct MergedSubdomain {
 /// u at the dofs of a subdomain in terms of local unknowns: (unknown, coefficient) pairs and an offset.
 type RankRows = Vec<(Vec<(PetscInt, f64)>, f64)>;
 
-impl MergedSubdomain {
+impl RankMatrix {
     /// The load of all ranks, and the norm that residuals are relative to; `mine` are the subdomains of this one.
     /// Collective.
     fn load(
@@ -223,7 +227,9 @@ impl MergedSubdomain {
         let all = unknowns.layout.scene().n_subdomains();
         let owned = match format {
             MatrixFormat::Assembled => unknowns.share(ranks, rank),
-            MatrixFormat::Unassembled => unknowns.range(contiguous_share(all, ranks, rank)),
+            MatrixFormat::Unassembled | MatrixFormat::Separate => {
+                unknowns.range(contiguous_share(all, ranks, rank))
+            }
         };
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &self.unknowns, &self.f)?.reverse_add(&self.f, &b)?;
@@ -238,27 +244,40 @@ impl MergedSubdomain {
         Ok((b, reference))
     }
 
-    fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<MergedSubdomain> {
+    fn new(
+        session: &Session,
+        subdomains: &[Subdomain],
+        all: &Unknowns,
+        separate: bool,
+    ) -> Result<RankMatrix> {
+        let size = if separate { 1 } else { subdomains.len().max(1) };
         let mut unknowns: Vec<PetscInt> = Vec::new();
-        for &dof in subdomains.iter().flat_map(|s| &s.dofs) {
-            unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as PetscInt));
-            unknowns.extend(all.void_beside(dof).0.iter().map(|&v| v as PetscInt));
+        let mut starts = vec![0];
+        for part in subdomains.chunks(size) {
+            let mut own: Vec<PetscInt> = Vec::new();
+            for &dof in part.iter().flat_map(|s| &s.dofs) {
+                own.extend(all.terms(dof).0.iter().map(|t| t.0 as PetscInt));
+                own.extend(all.void_beside(dof).0.iter().map(|&v| v as PetscInt));
+            }
+            own.sort_unstable();
+            own.dedup();
+            unknowns.extend(own);
+            starts.push(unknowns.len());
         }
-        unknowns.sort_unstable();
-        unknowns.dedup();
-        let find = |g: u64| {
-            let found = unknowns.binary_search(&(g as PetscInt));
-            found.expect("every unknown was listed") as PetscInt
+        let find = |s: usize, g: u64| {
+            let first = starts[s / size];
+            let found = unknowns[first..starts[s / size + 1]].binary_search(&(g as PetscInt));
+            (first + found.expect("every unknown was listed")) as PetscInt
         };
-        let local = |s: &Subdomain| -> RankRows {
+        let local = |k: usize, s: &Subdomain| -> RankRows {
             let terms = s.dofs.iter().map(|&dof| all.terms(dof));
-            let found = |list: Vec<(u64, f64)>| list.into_iter().map(|(g, c)| (find(g), c));
+            let found = |list: Vec<(u64, f64)>| list.into_iter().map(|(g, c)| (find(k, g), c));
             terms.map(|(list, o)| (found(list).collect(), o)).collect()
         };
         let n = unknowns.len();
         let mut room = vec![1; n];
-        for s in subdomains {
-            let local = local(s);
+        for (number, s) in subdomains.iter().enumerate() {
+            let local = local(number, s);
             for (i, (rows, _)) in local.iter().enumerate() {
                 let cols = s.k.row(i).0.iter().map(|&j| local[j as usize].0.len());
                 let most = cols.sum::<usize>() as PetscInt;
@@ -269,8 +288,8 @@ impl MergedSubdomain {
         let k = Mat::preallocated(session, Comm::Own, n, n, &room, &[])?;
         let mut f = vec![0.0; n];
         let (mut cols, mut vals) = (Vec::new(), Vec::new());
-        for s in subdomains {
-            let local = local(s);
+        for (number, s) in subdomains.iter().enumerate() {
+            let local = local(number, s);
             for (i, (rows, _)) in local.iter().enumerate() {
                 let (col, val) = s.k.row(i);
                 let entries = || col.iter().zip(val).map(|(&j, &v)| (&local[j as usize], v));
@@ -292,7 +311,8 @@ impl MergedSubdomain {
                 let own = all.layout.index(s.dofs[i]);
                 let takes = |v: u64| !itself || v == own || all.layout.is_inserted(v);
                 for &v in void.iter().filter(|v| takes(**v)) {
-                    k.add_values(&[find(v)], &[find(v)], &[diagonal()])?;
+                    let place = [find(number, v)];
+                    k.add_values(&place, &place, &[diagonal()])?;
                 }
             }
         }
@@ -300,7 +320,7 @@ impl MergedSubdomain {
         k.set_flag(MatFlag::Symmetric)?;
         let f = PetscVec::from_slice(session, &f)?;
         let components = all.layout.components();
-        let fields = match (unknowns.first(), unknowns.last()) {
+        let fields = match (unknowns.iter().min(), unknowns.iter().max()) {
             (Some(&first), Some(&last)) => {
                 let places = all.places(first as usize..last as usize + 1);
                 let place = |g: &PetscInt| places[(g - first) as usize] as usize;
@@ -308,7 +328,7 @@ impl MergedSubdomain {
             }
             _ => Vec::new(),
         };
-        Ok(MergedSubdomain {
+        Ok(RankMatrix {
             unknowns,
             fields,
             k,

@@ -32,6 +32,7 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         BaselineTask::Baseline {
             name,
             rescue,
+            separate,
             active,
             solution,
         } => {
@@ -46,7 +47,14 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
                 MatrixFormat::Assembled if scene.has_contact() => {
                     contact::baseline(session, &scene, &job, row, solution)?
                 }
-                _ => linear::baseline(session, &scene, &job, row, active, solution)?,
+                format => {
+                    let format = if *separate {
+                        MatrixFormat::Separate
+                    } else {
+                        format
+                    };
+                    linear::baseline(session, &scene, &job, (row, format), active, solution)?
+                }
             }
         }
         BaselineTask::Judge { solutions } => {

@@ -84,7 +84,7 @@ pub fn kappa(krylov: &Ksp) -> Result<Option<f64>> {
     Ok((small > 1e-13 * large).then(|| large / small))
 }
 
-/// A baseline on the unassembled or the assembled matrix. `active`: the rows that hold, in scenes with inequalities.
+/// A baseline on its matrix in this format. `active`: the rows that hold, in scenes with inequalities.
 ///
 /// # Errors
 /// Those of the scene, PETSc's, and those of the disk.
@@ -92,29 +92,29 @@ pub fn baseline(
     session: &Session,
     scene: &Scene,
     job: &Job,
-    row: &Baseline,
+    (row, format): (&Baseline, MatrixFormat),
     active: &[usize],
     file: &Path,
 ) -> Result<Outcome> {
     let layout = UnknownLayout::new(scene);
-    let unknowns = match row.format {
+    let unknowns = match format {
         MatrixFormat::Assembled => Unknowns::all(&layout),
-        MatrixFormat::Unassembled if scene.has_contact() => {
+        _ if scene.has_contact() => {
             let rows = Inequalities::new(scene, &layout);
             let mut on = rows.set(active);
             let in_order: Vec<usize> = (0..rows.len()).collect();
             let groups = ActiveGroups::new(&rows, &mut on, &in_order);
             Unknowns::merged(&layout, &rows, &groups)
         }
-        MatrixFormat::Unassembled => Unknowns::dense(&layout),
+        _ => Unknowns::dense(&layout),
     };
     let (system, assemble) = timed(session, || {
-        AssembledSystem::new(session, scene, &unknowns, row.format)
+        AssembledSystem::new(session, scene, &unknowns, format)
     })?;
     let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
     kernel.attach(&system.a)?;
     let (ksp, krylov) = solver(session, row, &system.a)?;
-    if row.format == MatrixFormat::Unassembled {
+    if format != MatrixFormat::Assembled {
         tell(session, scene, &ksp, &unknowns, &system)?;
     }
     let ((), setup) = timed(session, || ksp.setup())?;

@@ -18,12 +18,15 @@ const INNER: f64 = 0.1;
 /// subdomain of a scene of 512 bodies, were more than 24 GB, and the system ended other programs.
 const MAX_RANKS: usize = 256;
 
+/// The layout with as many ranks as cores that keeps the subdomains apart.
+const PACKED: &str = "packed";
+
 /// One method in one layout.
 pub struct PlannedRun {
     /// `None`: ours.
     pub baseline: Option<&'static Baseline>,
     /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
-    /// `subdomain`.
+    /// `subdomain`, or `packed`: a rank per core with several subdomains in its matrix.
     pub layout: &'static str,
     /// MPI ranks.
     pub ranks: usize,
@@ -55,6 +58,7 @@ impl PlannedRun {
             Some(b) => BaselineTask::Baseline {
                 name: b.name.into(),
                 rescue,
+                separate: self.layout == PACKED,
                 active: active.to_vec(),
                 solution,
             },
@@ -177,9 +181,13 @@ fn runs(
         };
         match baseline.format {
             MatrixFormat::Assembled => runs.push(on("core", cores, None)),
-            MatrixFormat::Unassembled => {
+            MatrixFormat::Unassembled | MatrixFormat::Separate => {
                 runs.push(on("subdomain", subdomains, Some(subdomains)));
                 let few = cores.min(subdomains);
+                // KSPFETIDP's own numbering does not know repeated entries.
+                if few < subdomains && baseline.krylov.is_empty() && petsc::REPEATS {
+                    runs.push(on(PACKED, few, Some(subdomains)));
+                }
                 if layouts == Layouts::Three && few < bodies && bodies < subdomains {
                     runs.push(on("body", bodies, Some(bodies)));
                 }

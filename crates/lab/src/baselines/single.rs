@@ -36,6 +36,7 @@ pub fn baseline(
         task: BaselineTask::Baseline {
             name: name.into(),
             rescue: false,
+            separate: false,
             active: active.to_vec(),
             solution: launcher.workspace.file("result.u"),
         },

@@ -38,6 +38,8 @@ pub enum BaselineTask {
         name: String,
         /// Whether this is the second try.
         rescue: bool,
+        /// Whether each subdomain of a rank is a part of its own, for methods on the unassembled matrix.
+        separate: bool,
         /// The active rows, for methods that solve equations only.
         active: Vec<usize>,
         /// Where the solution goes.

@@ -164,7 +164,7 @@ pub fn figure(report: &BenchReport) -> Figure {
     };
     let marker = |row: &BenchRow| match row.layout.as_str() {
         "ranks" | "subdomain" => Marker::Square,
-        "body" => Marker::Diamond,
+        "body" | "packed" => Marker::Diamond,
         "core" if row.run.subdomains.is_some() => Marker::Triangle,
         _ => Marker::Circle,
     };
