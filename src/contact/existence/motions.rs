@@ -103,9 +103,10 @@ pub fn check_cones(
 }
 
 /// A motion against forces of friction as one sees it. Where a node slides it opens by μ times its slip in the proof,
-/// because forces lie in cones; in truth it stays closed. Collective.
+/// because forces lie in cones; in truth it stays closed. A proof of sliding may also have a part that tips: where most
+/// of it is left with all nodes closed, this is the motion. Collective.
 fn as_seen(dual: &Dual, away: &KernelMotion, cones: &[FrictionCone]) -> KernelMotion {
-    let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
+    let (natural, jump) = (&dual.natural, &dual.stiffness.jump);
     let size = away.largest();
     let known = natural.known();
     let mut alpha = vec![0.0; known.n()];
@@ -121,36 +122,47 @@ fn as_seen(dual: &Dual, away: &KernelMotion, cones: &[FrictionCone]) -> KernelMo
         held[i] = jump.law[i].bears(0.0) || along(i).abs() <= little;
     }
     for cone in cones {
-        let [normal, first, second] =
-            [0, 1, 2].map(|k| cone.rows.get(k).map_or(0.0, |&i| along(i)));
-        let slip = first.hypot(second);
-        let opens = -normal > cone.opening(slip) * (1.0 + 1e-3) + little;
-        held[cone.rows[0]] = !opens;
-        let sticks = !opens && slip <= little;
-        cone.rows[1..].iter().for_each(|&i| held[i] = sticks);
+        held[cone.rows[0]] = true;
+        cone.rows[1..].iter().for_each(|&i| held[i] = false);
     }
-    // The part of the motion along what is left free.
-    let free = natural.gram(comm, &held);
-    let mut basis: Vec<KernelMotion> = Vec::new();
-    let mut seen = KernelMotion::default();
-    for motion in free.unheld.iter().filter(|m| m.dot_with(away) != 0.0) {
-        let mut rest = motion.clone();
-        for other in &basis {
-            rest = rest.plus(-rest.dot_with(other) / other.square(), other);
+    let mut seen = part_along(dual, away, &held);
+    if seen.square() < 0.5 * away.square() {
+        for cone in cones {
+            let [normal, first, second] =
+                [0, 1, 2].map(|k| cone.rows.get(k).map_or(0.0, |&i| along(i)));
+            let slip = first.hypot(second);
+            let opens = -normal > cone.opening(slip) * (1.0 + 1e-3) + little;
+            held[cone.rows[0]] = !opens;
+            let sticks = !opens && slip <= little;
+            cone.rows[1..].iter().for_each(|&i| held[i] = sticks);
         }
-        if rest.square() > 1e-20 * motion.square() {
-            seen = seen.plus(away.dot_with(&rest) / rest.square(), &rest);
-            basis.push(rest);
-        }
+        seen = part_along(dual, away, &held);
     }
-    let seen = match seen.largest() > little {
-        true => seen,
-        false => away.clone(),
-    };
+    if seen.largest() <= little {
+        seen = away.clone();
+    }
     // A name needs two digits, and the proof may have no more: a turn by δ beside a slide lengthens slips by δ²/2. More
     // of them would make a turn about a point far away of a slide.
     let least = 2e-2 * seen.largest();
     KernelMotion(seen.0.into_iter().filter(|e| e.1.abs() > least).collect())
+}
+
+/// The part of a motion along what these rows leave free. Collective.
+fn part_along(dual: &Dual, motion: &KernelMotion, held: &[bool]) -> KernelMotion {
+    let free = dual.natural.gram(dual.comm(), held);
+    let mut basis: Vec<KernelMotion> = Vec::new();
+    let mut part = KernelMotion::default();
+    for free in free.unheld.iter().filter(|m| m.dot_with(motion) != 0.0) {
+        let mut rest = free.clone();
+        for other in &basis {
+            rest = rest.plus(-rest.dot_with(other) / other.square(), other);
+        }
+        if rest.square() > 1e-20 * free.square() {
+            part = part.plus(motion.dot_with(&rest) / rest.square(), &rest);
+            basis.push(rest);
+        }
+    }
+    part
 }
 
 /// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above
