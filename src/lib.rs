@@ -153,6 +153,7 @@ pub mod inside {
     pub use crate::contact::{driver, line_minimum, node, nodes};
     pub use crate::feti::cost::{forms, sizes::ProblemSizes, variation::JUMPS};
     pub use crate::feti::deflation::watch;
+    pub use crate::feti::interface::entities::{Average, AverageKind};
     pub use crate::feti::interface::sharing::DofSharing;
     pub use crate::feti::jump::{operator::Jump, weights};
     pub use crate::feti::projector::{coarse_solver, distributed, gram::FEW};

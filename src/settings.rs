@@ -2,8 +2,8 @@
 
 pub use crate::contact::{ContactSettings, ContactType, FrictionTuning, Tuning};
 pub use crate::feti::settings::{
-    Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
-    Scaling,
+    Adaptive, Averages, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal,
+    ProjectorKind, Scaling,
 };
 use crate::Result;
 use petsc::{Options, Session};
@@ -84,5 +84,5 @@ setters!(MethodSettings:
     adaptive: Adaptive, adaptive_max: usize, recycle: usize, coupled: usize, keeps_analyses: bool, check: bool,
     certify: bool, stops_early: bool, spectrum: bool, rtol: f64, prefix: String;
     optional
-    pc_type: PcType, lifting: CoarseFunctions, scaling: Scaling, memory: usize, threads: usize
+    pc_type: PcType, averages: Averages, lifting: CoarseFunctions, scaling: Scaling, memory: usize, threads: usize
 );

@@ -283,7 +283,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetOptionsPrefix(FetiFeti ff, const char pre
 .  ff - the solver
 
    Options Database Keys:
-+  -fetifeti_bodies <n>    - number of bodies for subdomains that were given none; 0: one for every eight subdomains
++  -fetifeti_bodies <n>    - number of bodies for subdomains that were given none; 0: one for every connected piece
 .  -fetifeti_view          - show the solver after set-up
 .  -fetifeti_ksp_rtol <r>  - relative tolerance of the iteration; all options of a KSP with this prefix
 -  -fetifeti_contact_...   - the contact loop; see docs/options.md

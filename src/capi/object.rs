@@ -108,7 +108,7 @@ impl Object {
     /// Reads the options of the object itself. Collective.
     pub fn set_from_options(&mut self) -> Result<()> {
         let options = self.options();
-        let help = "bodies to group subdomains into that were given none; 0: one for every eight";
+        let help = "bodies to group subdomains into that were given none; 0: one for every connected piece";
         self.bodies = options.usize("bodies", self.bodies, help)?;
         let help = "show the solver after set-up";
         self.view = options.bool("view", self.view, help)?;

@@ -152,7 +152,7 @@ fn whole(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
         ..MethodSettings::default()
     };
     let options = Options::new(session, &prefix);
-    let help = "bodies to group the ranks into; 0: one for every eight local matrices";
+    let help = "bodies to group the ranks into; 0: one for every connected piece";
     let bodies = options.usize("bodies", 0, help)?;
     let mut torn = Torn::from_matis(session, a, u64::try_from(wishes.body).ok())?;
     if !wishes.bodies.is_null() {

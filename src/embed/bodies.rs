@@ -13,18 +13,6 @@ use petsc::{Session, Vec as PetscVec};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 
-/// Default number of subdomains per body of a partition.
-const USUAL: usize = 8;
-
-/// The number of bodies for `n` subdomains where the host wants `wanted`; 0: one for every eight of the `given` local
-/// matrices. A matrix that falls into many fragments does not make more bodies.
-pub fn number(wanted: usize, given: usize, n: usize) -> usize {
-    match wanted {
-        0 => given.div_ceil(USUAL).clamp(1, n.max(1)),
-        wanted => wanted.min(n),
-    }
-}
-
 /// Assigns to every part the body that most of its dofs name; in a tie, the lowest. `numbers` has the body of each
 /// global dof. Collective.
 ///

@@ -1,4 +1,5 @@
-//! Vertices, edges and faces. A class is a connected set of dofs of one component that the same subdomains share.
+//! Vertices, edges and faces. A class has the dofs of one component in a connected set of dofs that the same subdomains
+//! share.
 //!
 //! Two dofs are connected if the matrix of some subdomain couples their nodes. A subdomain sees only its own side of a
 //! face; one rank, determined by the list of subdomains, merges the sides.
@@ -19,6 +20,8 @@ use petsc::Session;
 pub struct InterfaceClass {
     /// The lowest global dof of the class, which identifies it.
     pub root: u32,
+    /// The lowest global dof of all components of the connected set.
+    pub whole: u32,
     /// The subdomains that share it, of all bodies, increasing.
     pub sharers: Vec<u32>,
     /// Local dofs, increasing.
@@ -81,24 +84,29 @@ pub fn classes(
     let mut next = vec![0; size];
     let mut out = Vec::new();
     for (part, mine) in parts.iter().zip(guesses) {
-        let mut found: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut found: BTreeMap<(u32, usize), Vec<u32>> = BTreeMap::new();
         for (home, dofs) in mine {
             for i in dofs {
-                let root = answers[home][next[home]];
+                let whole = answers[home][next[home]];
                 next[home] += 1;
-                found.entry(root).or_default().push(i);
+                let component = torn.component(part.dofs[i as usize]);
+                found.entry((whole, component)).or_default().push(i);
             }
         }
-        let class = |(root, mut dofs): (u32, Vec<u32>)| {
+        // All sharers have all dofs of a class, so that the lowest is the same for all.
+        let class = |((whole, _), mut dofs): ((u32, usize), Vec<u32>)| {
             dofs.sort_unstable();
-            let sharers = sharers.of(part.dofs[dofs[0] as usize]).to_vec();
+            let root = part.dofs[dofs[0] as usize];
             InterfaceClass {
                 root,
-                sharers,
+                whole,
+                sharers: sharers.of(root).to_vec(),
                 dofs,
             }
         };
-        out.push(found.into_iter().map(class).collect());
+        let mut classes: Vec<InterfaceClass> = found.into_iter().map(class).collect();
+        classes.sort_unstable_by_key(|class| class.root);
+        out.push(classes);
     }
     out
 }
@@ -120,7 +128,6 @@ fn connected(torn: &Torn, part: &TornSubdomain, sharers: &Sharers) -> Vec<Vec<u3
         if seen[start] || who.is_empty() {
             continue;
         }
-        let component = torn.component(part.dofs[start]);
         seen[start] = true;
         let mut stack = vec![start];
         let mut dofs = Vec::new();
@@ -130,8 +137,7 @@ fn connected(torn: &Torn, part: &TornSubdomain, sharers: &Sharers) -> Vec<Vec<u3
             for k in of_node(torn, part, i) {
                 for &j in part.k.row(k).0 {
                     for l in of_node(torn, part, j as usize) {
-                        let dof = part.dofs[l];
-                        if !seen[l] && torn.component(dof) == component && sharers.of(dof) == who {
+                        if !seen[l] && sharers.of(part.dofs[l]) == who {
                             seen[l] = true;
                             stack.push(l);
                         }

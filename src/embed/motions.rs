@@ -110,6 +110,14 @@ impl NearKernels {
         &self.bases
     }
 
+    /// The kernel of the matrix of part `j`, where such kernels take the place of the host's vectors.
+    pub fn own_kernel(&self, j: usize) -> KernelVectors {
+        match self.pairs {
+            Some(_) => self.bases[j].clone(),
+            None => KernelVectors::new(),
+        }
+    }
+
     /// The motions of part `j` and its neighbour `high` at the dofs `dofs` that they share: a row for each dof.
     pub fn between(&self, j: usize, high: u32, dofs: &[u32]) -> KernelVectors {
         match &self.pairs {
@@ -134,6 +142,11 @@ impl NearKernels {
     /// Number of motions of a subdomain of this rank, or of a neighbour.
     pub fn count(&self, subdomain: usize) -> usize {
         self.around[&(subdomain as u32)].0
+    }
+
+    /// The largest number of motions of a subdomain of this rank.
+    pub fn most(&self) -> usize {
+        self.bases.iter().map(Vec::len).max().unwrap_or(0)
     }
 
     /// How many motions the dofs that subdomains `low` and `high` share must see, so that neither moves without the

@@ -18,11 +18,6 @@ pub struct TornPiece {
 }
 
 impl TornPiece {
-    /// Whether some row has more than its diagonal.
-    pub fn is_coupled(&self) -> bool {
-        (0..self.k.n()).any(|i| self.couples(i))
-    }
-
     /// Whether row `i` has more than its diagonal.
     pub fn couples(&self, i: usize) -> bool {
         self.k.row(i).0.iter().any(|&j| j as usize != i)

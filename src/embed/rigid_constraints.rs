@@ -5,7 +5,7 @@
 //! not enough, nodes of the face are added one by one; each is the node that moves most in the motions not yet
 //! detected, which spreads the nodes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::Bodies;
 use super::classes::InterfaceClass;
@@ -14,7 +14,8 @@ use super::motions::NearKernels;
 use super::parts::TornSubdomain;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::feti::Primal;
+use crate::feti::interface::motions::beyond_means;
+use crate::feti::settings::{Averages, Primal};
 use crate::substructures::EntityKind;
 use parallel::exchange::exchange;
 use petsc::Session;
@@ -65,14 +66,22 @@ impl NearKernels {
                 let mut span = Span::default();
                 let mut held: Vec<Vec<f64>> = Vec::new();
                 let common = classes[j].iter().filter(|c| c.sharers.contains(high));
+                let mut wholes: BTreeMap<u32, Vec<&InterfaceClass>> = BTreeMap::new();
                 for class in common.clone() {
                     let kind = class.kind(shape.space);
-                    if (class.is_vertex() && shape.primal.vertices)
-                        || (!class.is_vertex() && shape.primal.takes(kind))
-                    {
+                    if class.is_vertex() && shape.primal.vertices {
+                        span.add(motions.mean(&class.dofs), SEEN);
+                        held.push(motions.mean(&class.dofs));
+                    } else if !class.is_vertex() && shape.primal.takes(kind) {
+                        wholes.entry(class.whole).or_default().push(class);
                         span.add(motions.mean(&class.dofs), SEEN);
                         held.push(motions.mean(&class.dofs));
                     }
+                }
+                let all_motions = shape.primal.averages == Averages::Motions && shape.space;
+                if shape.primal.averages == Averages::Motions {
+                    let seen = wholes.values().flat_map(|whole| motions.averages(whole));
+                    seen.for_each(|row| span.add(row, LOOSE));
                 }
                 let faces = common.filter(|c| c.kind(shape.space) == EntityKind::Face);
                 if span.rank() < all.rank() && shape.primal.edges && !shape.primal.faces {
@@ -95,7 +104,12 @@ impl NearKernels {
                         extra.insert(i);
                     }
                 }
-                while let Some(best) = badly_seen(&motions, self.components, &held) {
+                // In space what averages of motions see they see well; in the plane nodes cost little.
+                let poorly = |held: &[Vec<f64>]| match all_motions {
+                    true => None,
+                    false => badly_seen(&motions, self.components, held),
+                };
+                while let Some(best) = poorly(&held) {
                     for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, best)) {
                         held.push(motions.row(i).to_vec());
                         extra.insert(i);
@@ -126,6 +140,25 @@ impl SharedMotions<'_> {
     fn row(&self, i: u32) -> &[f64] {
         let at = self.dofs.binary_search(&i);
         &self.rows[at.expect("a shared dof")]
+    }
+
+    /// The values of averages of motions over an edge or face, beyond the means of its components, for all motions.
+    fn averages(&self, whole: &[&InterfaceClass]) -> KernelVectors {
+        let of = |(c, class): (usize, &&InterfaceClass)| -> Vec<(u32, usize)> {
+            class.dofs.iter().map(|&i| (i, c)).collect()
+        };
+        let mut dofs: Vec<(u32, usize)> = whole.iter().enumerate().flat_map(of).collect();
+        dofs.sort_unstable();
+        let k = self.rows.first().map_or(0, Vec::len);
+        let column = |a: usize| dofs.iter().map(|&(i, _)| self.row(i)[a]).collect();
+        let columns: KernelVectors = (0..k).map(column).collect();
+        let component: Vec<usize> = dofs.iter().map(|d| d.1).collect();
+        let root = (dofs.len() as f64).sqrt();
+        let along =
+            |w: &Vec<f64>, x: &Vec<f64>| w.iter().zip(x).map(|(w, x)| w * x).sum::<f64>() / root;
+        let row = |w: &Vec<f64>| columns.iter().map(|x| along(w, x)).collect();
+        let weights = beyond_means(columns.clone(), &component);
+        weights.iter().map(row).collect()
     }
 
     /// The means of all motions over some of the dofs.

@@ -3,13 +3,14 @@
 use std::cell::{Ref, RefCell};
 use std::collections::HashSet;
 
+use super::averaging;
 use super::bodies::{by_most_dofs, named_groups, Bodies};
 use super::classes::{classes, in_space};
 use super::contact::HostContact;
 use super::frame::TornFrame;
 use super::kernels;
 use super::motions::NearKernels;
-use super::partition::partition;
+use super::partition::{partition, whole_pieces, MOST};
 use super::parts::parts;
 use super::rigid_constraints::ConstraintContext;
 use super::rows::rows;
@@ -20,14 +21,12 @@ use super::subdomains::{subdomain, SubdomainProperties};
 use super::torn::{GivenRows, Torn};
 use super::touched::RankProblem;
 use crate::contact::{Observer, State as ContactState};
-use crate::embed::bodies;
 use crate::feti::krylov::solve::JudgeTiming;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
 use crate::substructures::{Law, Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
-use parallel::exchange::total;
 use parallel::halo::Halo;
 use petsc::{Event, Session, Vec as PetscVec};
 
@@ -89,7 +88,7 @@ pub(super) struct ContactEnd {
 
 impl Embedded {
     /// Finds substructures and sets the solver up. Where the host names no bodies, the subdomains are grouped into
-    /// `wanted` of them; 0: one for every eight local matrices. Collective.
+    /// `wanted` of them; 0: one for every connected piece that is not too large ([`whole_pieces`]). Collective.
     ///
     /// # Errors
     /// An operator that is not admissible (unsymmetric, indefinite, with empty rows among others), and PETSc's own.
@@ -107,7 +106,6 @@ impl Embedded {
             )));
         }
         let event = Event::register(session, "FetiFetiTear")?.scope()?;
-        let primal = asked.primal;
         let (ghosts, halo) = torn.halo(session)?;
         let states = states(session, torn);
         let (mut parts, rows_of_pieces) = session.agree(parts(torn, &states))?;
@@ -121,13 +119,14 @@ impl Embedded {
         let named = named_groups(session, sharers.first, &parts)?;
         let bonds = motions.bonds(session, &parts, &sharers, named.as_deref());
         let n = sharers.n_subdomains;
-        let given = torn.pieces.iter().filter(|p| p.is_coupled()).count();
-        let given = total(session.comm(), given as f64) as usize;
         let group = match named {
             Some(group) => group,
             None => {
-                let wanted = bodies::number(wanted, given, n);
-                let all = partition(session, &settings.prefix, n, &bonds, wanted)?;
+                let prefix = &settings.prefix;
+                let all = match wanted {
+                    0 => whole_pieces(session, prefix, n, &bonds, MOST)?,
+                    wanted => partition(session, prefix, n, &bonds, wanted.min(n))?,
+                };
                 all[sharers.first..sharers.first + parts.len()].to_vec()
             }
         };
@@ -142,10 +141,12 @@ impl Embedded {
             kernels::over_bodies(session, &bodies.mine, columns);
         }
         let classes = classes(session, torn, &parts, &sharers);
+        let space = in_space(session, &classes);
+        let kind = (space, torn.block_size, motions.most());
         let shape = ConstraintContext {
-            space: in_space(session, &classes),
+            space,
             bodies,
-            primal,
+            primal: averaging::constraints(session, &asked, kind, sharers.first, &classes)?,
         };
         let (averaged, mut nodes) =
             motions.missing(session, torn, &parts, &sharers, &classes, &shape);
@@ -186,18 +187,23 @@ impl Embedded {
             let known = SubdomainProperties {
                 index: sharers.first + j,
                 near_kernel: columns(j),
+                own_kernel: motions.own_kernel(j),
                 classes: &classes[j],
                 averaged: &averaged,
                 nodes: &nodes[j],
             };
             subdomain(torn.n_global, part, &shape, known)
         });
-        // It is not ragged: its ρ is the diagonal of K already.
         let names = (0..n_bodies).map(|b| b.to_string());
-        let problem = Problem::new(names, sharers.n_subdomains)
+        let mut problem = Problem::new(names, sharers.n_subdomains)
             .with_subdomains(local)
             .with_rows(rows)
             .with_friction(contact.friction_behind(n_ties));
+        // Nothing is known of a mesh: weights follow the stiffness of each copy.
+        problem.ragged = true;
+        let settings = settings
+            .primal(shape.primal)
+            .averages(shape.primal.averages);
         // The solver has their loads.
         parts.iter_mut().for_each(|p| p.known = Vec::new());
         drop(event);

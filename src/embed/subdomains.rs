@@ -13,6 +13,8 @@ pub struct SubdomainProperties<'a> {
     pub index: usize,
     /// Motions without energy.
     pub near_kernel: Option<KernelVectors>,
+    /// Where they are not known, those of its matrix.
+    pub own_kernel: KernelVectors,
     /// Vertices, edges and faces.
     pub classes: &'a [InterfaceClass],
     /// Pairs of subdomains whose common faces get an average, as edges do.
@@ -40,6 +42,7 @@ pub fn subdomain(
         },
         key: body_dof(n_global, body, c.root),
         dofs: c.dofs.clone(),
+        whole: c.whole.into(),
     };
     let number = |&dof: &u32| body_dof(n_global, body, dof);
     Subdomain {
@@ -53,6 +56,7 @@ pub fn subdomain(
         primal: primal.into_iter().collect(),
         entities: others.iter().map(entity).collect(),
         near_kernel: known.near_kernel,
+        own_kernel: known.own_kernel,
         coordinates: None,
     }
 }

@@ -1,8 +1,8 @@
 //! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use super::jump::coupled::MANY;
+pub use super::primal_constraints::{Averages, Primal};
 use super::removed::refuse_removed;
-use crate::substructures::EntityKind;
 use crate::{Error, Result};
 use petsc::{named, Options, Session};
 
@@ -106,62 +106,6 @@ impl Adaptive {
     }
 }
 
-/// The kinds of primal constraints inside a body; at least one of them is chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Primal {
-    /// Values at vertices.
-    pub vertices: bool,
-    /// Averages over edges.
-    pub edges: bool,
-    /// Averages over faces.
-    pub faces: bool,
-}
-
-impl Default for Primal {
-    fn default() -> Self {
-        Primal {
-            vertices: true,
-            edges: true,
-            faces: false,
-        }
-    }
-}
-
-impl Primal {
-    const NAMES: [&'static str; 3] = ["vertices", "edges", "faces"];
-
-    /// Whether averages over entities of this kind are primal.
-    pub fn takes(self, kind: EntityKind) -> bool {
-        match kind {
-            EntityKind::Edge => self.edges,
-            EntityKind::Face => self.faces,
-        }
-    }
-
-    /// The value as the option takes it.
-    pub fn name(self) -> String {
-        let chosen = [self.vertices, self.edges, self.faces];
-        let names = Self::NAMES.iter().zip(chosen).filter(|n| n.1).map(|n| *n.0);
-        names.collect::<Vec<_>>().join(",")
-    }
-
-    /// Parses a list with commas; `None` if a word is wrong.
-    pub fn parse(text: &str) -> Option<Primal> {
-        let mut chosen = [false; 3];
-        for word in text.split(',') {
-            let word = word.trim().to_ascii_lowercase();
-            chosen[Self::NAMES.iter().position(|n| *n == word)?] = true;
-        }
-        let [vertices, edges, faces] = chosen;
-        Some(Primal {
-            vertices,
-            edges,
-            faces,
-        })
-    }
-}
-
 /// The weight Q of the projector P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -227,6 +171,8 @@ pub struct MethodSettings {
     pub memory: Option<usize>,
     /// `fetifeti_primal`.
     pub primal: Primal,
+    /// `fetifeti_averages`; `None` means components, and for matrices of other programs what takes less time.
+    pub averages: Option<Averages>,
     /// `fetifeti_projector`.
     pub projector: ProjectorKind,
     /// `fetifeti_adaptive`.
@@ -265,6 +211,7 @@ impl Default for MethodSettings {
             scaling: None,
             gamma: 1.0,
             primal: Primal::default(),
+            averages: None,
             precision: Precision::Double,
             operators: Operators::Auto,
             memory: None,
@@ -322,6 +269,8 @@ impl MethodSettings {
                 Primal::NAMES.join(", ")
             ))
         })?;
+        let help = "what edges and faces are averaged with";
+        self.averages = o.named_or_auto("averages", self.averages, help)?;
         let help = "bound on the condition number where coefficients jump inside bodies: off, auto or a number above 1";
         let text = o.string("adaptive", &self.adaptive.name(), help)?;
         self.adaptive = Adaptive::parse(&text).ok_or_else(|| {

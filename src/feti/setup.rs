@@ -123,11 +123,12 @@ impl SetUpResult {
     ) -> Result<SetUpResult> {
         let clock = Instant::now();
         let comm = session.comm();
-        session.agree(entities::check(problem, settings.primal))?;
+        let constraints = choice::constraints(settings);
+        session.agree(entities::check(problem, constraints))?;
         session.agree(location::check(comm, problem))?;
         let scaling = settings.scaling.unwrap_or_else(|| choice::scaling(problem));
         let weights = weights(problem, scaling, settings.gamma);
-        let sharing = session.agree(DofSharing::new(comm, problem, &weights, settings.primal))?;
+        let sharing = session.agree(DofSharing::new(comm, problem, &weights, constraints))?;
         drop(weights);
         let many = settings.coupled;
         let mut jump = Jump::coupling(comm, problem, &sharing, many); /*      B, B_D                 */

@@ -81,6 +81,7 @@ impl Subdomain {
             primal: Vec::new(),
             entities: Vec::new(),
             near_kernel: None,
+            own_kernel: Vec::new(),
             coordinates: None,
             idle: Vec::new(),
             k,
@@ -127,9 +128,20 @@ impl Subdomain {
 }
 
 impl Entity {
-    /// The entity of this kind and key with these local dofs.
+    /// The entity of this kind and key with these local dofs. It is an edge or a face by itself.
     pub fn new(kind: EntityKind, key: u64, dofs: Vec<u32>) -> Entity {
-        Entity { kind, key, dofs }
+        Entity {
+            kind,
+            key,
+            dofs,
+            whole: key,
+        }
+    }
+
+    /// This entity as a component of an edge or face with this number.
+    pub fn of_whole(mut self, whole: u64) -> Entity {
+        self.whole = whole;
+        self
     }
 }
 

@@ -48,6 +48,8 @@ pub struct Subdomain {
     /// rigid body modes about the body's own centre), with entries of order one, each of length n. `None`: nothing is
     /// known, and kernels are found from the matrices alone.
     pub near_kernel: Option<Vec<Vec<f64>>>,
+    /// Where `near_kernel` is not known: a basis of the kernel of K, entries of order one, or nothing.
+    pub(crate) own_kernel: Vec<Vec<f64>>,
     /// Position of each local dof, if known: used for nested dissection. Length n.
     pub coordinates: Option<Vec<[f64; 3]>>,
     /// Its part of the motions of its body without energy that K holds all the same; mostly none, see [`Idle`].
@@ -79,6 +81,9 @@ pub struct Entity {
     pub key: u64,
     /// Local dofs; not empty.
     pub dofs: Vec<u32>,
+    /// The components of one edge or face have this number in common, which no other edge or face of the subdomain has.
+    /// All subdomains divide their entities in the same way.
+    pub whole: u64,
 }
 
 /// Everything the method needs to know about a problem; each rank holds its own part.

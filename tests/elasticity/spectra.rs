@@ -5,7 +5,7 @@ use crate::support::mpi::alone;
 use crate::support::sample::all_cases;
 use crate::support::session::with_session;
 use crate::support::solid;
-use fetifeti::settings::{MethodSettings, PcType, Primal};
+use fetifeti::settings::{Averages, MethodSettings, PcType, Primal};
 use fetifeti::FetiFeti;
 use petsc::{Options, Session};
 use solid::{Physics, Rows, Solid};
@@ -71,6 +71,28 @@ fn scalar_in_3d() {
             assert!(with("vertices") > 1.5 * usual);
             assert!(with("edges") < 1.2 * usual);
             assert!(with("vertices,edges,faces") < 1.05 * usual);
+        })
+    });
+}
+
+#[test]
+fn averages_of_motions() {
+    alone(|| {
+        with_session(|session| {
+            let solid = Solid::new(3, [2, 2, 2], elastic(0.3), Rows::Tied);
+            let with = |text, averages| {
+                let primal = Primal::parse(text).expect("constraints");
+                let settings = MethodSettings::default().primal(primal);
+                kappa_with(session, &solid, settings.averages(averages))
+            };
+            // Faces and vertices do not hold rotations by components alone, and by motions they do.
+            let [few, all] = [Averages::Components, Averages::Motions];
+            let faces = with("vertices,faces", few);
+            assert!(with("vertices,faces", all) < 0.9 * faces);
+            if all_cases() {
+                let most = with("vertices,edges,faces", few);
+                assert!(with("vertices,edges,faces", all) < most);
+            }
         })
     });
 }

@@ -142,7 +142,7 @@ fn motions_of_stacked_matrices_are_known_or_found() {
         let out = program.run(2, &format!("-fetifeti_ksp_rtol 1e-10 {options}"));
         assert_eq!(out.code, 0, "{}", out.all());
         let kernel = "bodies: 2 (1 floating, kernels of dimension 3)";
-        for part in [kernel, "scaling: rho"] {
+        for part in [kernel, "scaling: stiffness"] {
             assert!(out.stdout.contains(part), "no \"{part}\" in {}", out.all());
         }
         number_after(&out, "primal dofs:")

@@ -70,7 +70,7 @@ fn what_a_user_may_watch() {
         "bodies: 2",
         "multipliers: ",
         "primal dofs: ",
-        "scaling: rho",
+        "scaling: stiffness",
         "Inner KSP solver details",
         "Iteratively computed extreme singular values",
         "Iteratively computed eigenvalues",

@@ -80,6 +80,25 @@ fn random_partitions() {
     }
 }
 
+/// Averages of motions take fewer iterations than those of components, with a near-null space and without one.
+#[test]
+fn averages_of_motions() {
+    let scratch = Scratch::new("embed-motions");
+    let program = program(&scratch);
+    let sum = |ranks, averages: &str| {
+        let options = format!(
+            "-first 200 -count 12 -fetifeti_ksp_rtol 1e-11 -fetifeti_primal vertices,edges,faces \
+             -fetifeti_averages {averages}"
+        );
+        let out = program.run(ranks, &options);
+        good(&out, &options);
+        iterations(&out).iter().sum::<usize>()
+    };
+    let [one, two] = [1, 2].map(|ranks| sum(ranks, "motions"));
+    assert!(one.abs_diff(two) <= 2, "{one} and {two}");
+    assert!(one < sum(1, "components"));
+}
+
 /// A subdomain of one node lies between two others that meet there only. It holds neither of them to the other.
 #[test]
 fn a_node_is_no_hinge_of_a_body() {

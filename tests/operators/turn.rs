@@ -10,7 +10,7 @@ use cholesky::interior::Condenser;
 use cholesky::symbolic::Keep;
 use fetifeti::inside::turn::*;
 use fetifeti::inside::which::{Operator, OperatorForm};
-use fetifeti::inside::{LocalProblem, ScaledSubdomain};
+use fetifeti::inside::{Average, AverageKind, LocalProblem, ScaledSubdomain};
 use scene::Scene;
 
 const PHI: f64 = 3.7;
@@ -81,7 +81,14 @@ impl Sample {
     }
 
     fn local(&self, k: &Csr, form: OperatorForm) -> LocalProblem {
-        let averages: Vec<&[u32]> = self.averages.iter().map(|a| &a[..]).collect();
+        let average = |dofs: &Vec<u32>| Average {
+            kind: AverageKind::Mean,
+            key: 0,
+            dofs: dofs.clone(),
+            weights: None,
+        };
+        let averages: Vec<Average> = self.averages.iter().map(average).collect();
+        let averages: Vec<&Average> = averages.iter().collect();
         let condenser = Condenser::alone(Keep::Interior);
         let places = Some(&self.places[..]);
         LocalProblem::new(

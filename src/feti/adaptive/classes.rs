@@ -9,6 +9,7 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
@@ -135,17 +136,27 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
     stiffness.1 > SMOOTH * stiffness.0 && rho.1 > EQUAL * rho.0
 }
 
-/// Places in the class of the dofs of the averages that are primal already.
-pub fn means(local: &ScaledSubdomain, class: &DualClass) -> Vec<Vec<usize>> {
-    let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
-    let inside = local
-        .gamma()
-        .basis
-        .supports()
-        .filter(|at| place.contains_key(&at[0]));
-    inside
-        .map(|at| at.iter().map(|i| place[i]).collect())
-        .collect()
+/// The averages on a class of local subdomain `j` that are primal already, as functionals of its dofs.
+pub fn averages(
+    jump: &Jump,
+    local: &ScaledSubdomain,
+    j: usize,
+    class: &DualClass,
+) -> Vec<Vec<f64>> {
+    let interface = &local.gamma().interface;
+    let dofs = class.at.iter().map(|&i| interface[i]);
+    let place: HashMap<u32, usize> = dofs.zip(0..).collect();
+    let inside = jump.averages[j]
+        .iter()
+        .filter(|a| place.contains_key(&a.dofs[0]));
+    let functional = |average: &Average| {
+        let mut c = vec![0.0; class.at.len()];
+        for (k, dof) in average.dofs.iter().enumerate() {
+            c[place[dof]] = average.weights.as_ref().map_or(1.0, |w| w[k]);
+        }
+        c
+    };
+    inside.map(functional).collect()
 }
 
 /// Notes the entries of B_D in the rows of every class.

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use crate::feti::interface::entities::{Average, AverageKind};
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
@@ -25,6 +26,7 @@ pub fn constrain(
 ) -> Result<Vec<ScaledSubdomain>> {
     let added = |j: usize| {
         let list = jump.averages[j].iter();
+        let list = list.filter(|a| a.kind == AverageKind::Adaptive);
         list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
     };
     let grows: Vec<bool> = (0..locals.len())
@@ -89,8 +91,10 @@ fn unturned(
     like: &LocalProblem,
     sub: &Subdomain,
 ) -> std::result::Result<LocalProblem, NoFactor> {
-    let averages = jump.averages[j].iter().filter(|a| a.weights.is_none());
-    let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
+    let averages = jump.averages[j].iter();
+    let averages: Vec<&Average> = averages
+        .filter(|a| a.kind != AverageKind::Adaptive)
+        .collect();
     let (delta, vertices) = like.gamma.interface.split_at(like.gamma.n_delta);
     let (places, condenser) = (sub.coordinates.as_deref(), Condenser::alone(Keep::Interior));
     let form = OperatorForm::Explicit;

@@ -13,7 +13,7 @@ use super::classes::DualClass;
 use super::pencil::PencilTerm;
 use crate::feti::adaptive::classes;
 use crate::feti::adaptive::pencil;
-use crate::feti::interface::entities::Average;
+use crate::feti::interface::entities::{Average, AverageKind};
 use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
@@ -127,7 +127,7 @@ pub fn find_adaptive_constraints(
             }
         };
         let parts: Vec<PencilTerm> = class.sharers.iter().map(own).collect();
-        pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
+        pencil::functionals(&parts, &classes::averages(jump, &locals[j], j, class), tau)
     });
     let found: Vec<&Vec<Vec<f64>>> = kind_of.iter().map(|&k| &of_kind[k]).collect();
 
@@ -149,6 +149,7 @@ pub fn find_adaptive_constraints(
         let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
         added.extend(functionals.map(|(values, &key)| {
             let average = Average {
+                kind: AverageKind::Adaptive,
                 key,
                 dofs: class.at.iter().map(|&i| interface[i]).collect(),
                 weights: Some(values.to_vec()),
@@ -204,9 +205,11 @@ fn signature(
 fn names(sub: &Subdomain, jump: &Jump, local: &ScaledSubdomain, j: usize) -> Vec<[u64; 2]> {
     let vertices = local.gamma().interface[local.gamma().n_delta..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
-    let averages = jump.averages[j].iter().map(|a| [1, a.key]);
+    let averages = jump.averages[j]
+        .iter()
+        .map(|a| [a.kind.number().into(), a.key]);
     let fixing = local.gamma().fixing.iter();
-    let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
+    let fixing = fixing.map(|&i| [(2 + sub.index as u64) << 32, i as u64]);
     vertices.chain(averages).chain(fixing).collect()
 }
 

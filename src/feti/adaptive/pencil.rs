@@ -44,9 +44,9 @@ pub struct PencilTerm {
     pub names: Vec<[u64; 2]>,
 }
 
-/// The functionals of n dofs to be made primal, so that A ≤ τ M where they vanish. `means` has, for each average that
-/// is primal already, the places of its dofs.
-pub fn functionals(parts: &[PencilTerm], means: &[Vec<usize>], tau: f64) -> Vec<Vec<f64>> {
+/// The functionals of n dofs to be made primal, so that A ≤ τ M where they and those that are primal already
+/// (`averages`, of the same dofs) vanish.
+pub fn functionals(parts: &[PencilTerm], averages: &[Vec<f64>], tau: f64) -> Vec<Vec<f64>> {
     let n = parts[0].t.rows;
     let order = parts[0].a.rows;
     let mut a = Dense::zeros(order, order);
@@ -65,7 +65,7 @@ pub fn functionals(parts: &[PencilTerm], means: &[Vec<usize>], tau: f64) -> Vec<
         let terms = f.col_mut(j).iter_mut().zip(&scale);
         terms.for_each(|(f, s)| *f *= s * scale[j]);
     }
-    let mut chosen = Chosen::new(n, &scale, means);
+    let mut chosen = Chosen::new(n, &scale, averages);
     loop {
         let k = product(&l, &f);
         if below(&k, tau) {
@@ -293,7 +293,7 @@ struct Chosen {
 }
 
 impl Chosen {
-    fn new(n: usize, scale: &[f64], means: &[Vec<usize>]) -> Chosen {
+    fn new(n: usize, scale: &[f64], averages: &[Vec<f64>]) -> Chosen {
         let largest = scale.iter().fold(0.0f64, |a, s| a.max(*s));
         let of = |i: usize| {
             let copies = scale.iter().skip(i).step_by(n);
@@ -305,22 +305,21 @@ impl Chosen {
             scale: (0..n).map(of).collect(),
             basis: Basis::default(),
         };
-        for mean in means {
-            let mut c = vec![0.0; n];
-            mean.iter().for_each(|&i| c[i] = 1.0 / out.scale[i]);
-            let size = c.iter().map(|v| v * v).sum::<f64>().sqrt();
-            c.iter_mut().for_each(|v| *v /= size);
-            out.scaled.push(c);
-            out.basis.push_mean(mean.clone());
+        for average in averages {
+            let scaled = average.iter().zip(&out.scale).map(|(w, s)| w / s);
+            if let Some(rest) = out.beyond(scaled.collect()) {
+                out.scaled.push(rest);
+                out.basis.push((0..n).collect(), average);
+            }
         }
         out
     }
 
-    /// Adds a functional in units of the scale; `false` if it depends on the earlier ones.
-    fn add(&mut self, c: &[f64]) -> bool {
+    /// The part of a functional, in units of the scale, beyond the earlier ones, of unit length; `None` without one.
+    fn beyond(&self, c: Vec<f64>) -> Option<Vec<f64>> {
         let norm = |c: &[f64]| c.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let mut rest = c.to_vec();
-        let size = norm(&rest);
+        let size = norm(&c);
+        let mut rest = c;
         for _ in 0..2 {
             for known in &self.scaled {
                 let along: f64 = known.iter().zip(&rest).map(|(k, r)| k * r).sum();
@@ -330,9 +329,17 @@ impl Chosen {
         }
         let left = norm(&rest);
         if left <= SAME * size || left.is_nan() {
-            return false;
+            return None;
         }
         rest.iter_mut().for_each(|v| *v /= left);
+        Some(rest)
+    }
+
+    /// Adds a functional in units of the scale; `false` if it depends on the earlier ones.
+    fn add(&mut self, c: &[f64]) -> bool {
+        let Some(rest) = self.beyond(c.to_vec()) else {
+            return false;
+        };
         let mut weights: Vec<f64> = rest.iter().zip(&self.scale).map(|(c, s)| c * s).collect();
         let largest = weights.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         weights.iter_mut().for_each(|v| *v /= largest);

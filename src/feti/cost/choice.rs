@@ -15,7 +15,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::operators::preconditioner::coarse_corrected::COARSE_CORRECTED;
 use crate::feti::operators::preconditioner::dirichlet::DIRICHLET;
 use crate::feti::operators::preconditioner::PreconditionerKind;
-use crate::feti::settings::{CoarseFunctions, Scaling};
+use crate::feti::settings::{Averages, CoarseFunctions, MethodSettings, Primal, Scaling};
 use crate::substructures::Problem;
 use parallel::exchange::{sum_all, total};
 
@@ -90,6 +90,14 @@ impl PreconditionerCost {
         };
         let many = few * (1.0 + growth * (shape.across - 1.0)).sqrt();
         self.setup + few * (own + self.more) < many * self.iteration
+    }
+}
+
+/// The primal constraints.
+pub fn constraints(settings: &MethodSettings) -> Primal {
+    Primal {
+        averages: settings.averages.unwrap_or(Averages::Components),
+        ..settings.primal
     }
 }
 

@@ -8,17 +8,42 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::motions;
 use super::sharing::DofSharing;
-use crate::feti::settings::Primal;
+use crate::feti::settings::{Averages, Primal};
 use crate::substructures::{Entity, Problem, Subdomain};
 use crate::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use parallel::exchange::exchange_by_rank;
 
+/// The kind of a primal constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AverageKind {
+    /// The mean of a component over an edge or face.
+    Mean,
+    /// The part in a motion without energy, beyond the means.
+    Motion,
+    /// A functional that adaptivity has added.
+    Adaptive,
+}
+
+impl AverageKind {
+    /// The number of the kind among those of primal dofs, where vertices have 0 and fixing dofs 2.
+    pub fn number(self) -> u32 {
+        match self {
+            AverageKind::Mean => 1,
+            AverageKind::Adaptive => 3,
+            AverageKind::Motion => 4,
+        }
+    }
+}
+
 /// A primal constraint that several subdomains of a body share: the mean over some dofs, or another functional of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Average {
-    /// Key of the entity. A functional that adaptivity added has a body dof as key that no other functional has.
+    /// Its kind.
+    pub kind: AverageKind,
+    /// The key of the entity of a mean. For others, a body dof that no other functional of the kind has.
     pub key: u64,
     /// Local dofs, none of them a shared vertex.
     pub dofs: Vec<u32>,
@@ -84,16 +109,23 @@ pub fn averages(
     agreed?;
 
     let mut next = vec![0; size];
-    let mut out = Vec::new();
+    let (mut out, mut wholes) = (Vec::new(), Vec::new());
     for sub in &problem.local {
-        let mut mine = Vec::new();
+        let (mut mine, mut whole) = (Vec::new(), Vec::new());
         for entity in chosen(sub, primal) {
             let home = (entity.key % size as u64) as usize;
             let count = answers[home][next[home]];
             next[home] += 1;
-            mine.extend(average(problem, sharing, sub, entity, count)?);
+            if let Some(average) = average(problem, sharing, sub, entity, count)? {
+                mine.push(average);
+                whole.push(entity.whole);
+            }
         }
         out.push(mine);
+        wholes.push(whole);
+    }
+    if primal.averages == Averages::Motions {
+        motions::add(comm, problem, sharing, &wholes, &mut out);
     }
     Ok(out)
 }
@@ -131,6 +163,7 @@ fn average(
         dofs.push(i);
     }
     Ok((count > 1 && !dofs.is_empty()).then_some(Average {
+        kind: AverageKind::Mean,
         key: entity.key,
         dofs,
         weights: None,

@@ -3,4 +3,5 @@
 pub mod candidates;
 pub mod entities;
 pub mod location;
+pub mod motions;
 pub mod sharing;

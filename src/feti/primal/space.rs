@@ -125,7 +125,7 @@ impl PrimalSpace {
             let vertices = local.gamma().interface[local.gamma().n_delta..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
             let averages = averages[j].iter();
-            let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
+            let averages = averages.map(|a| (a.kind.number(), a.key));
             let fixing = local.gamma().fixing.iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {

@@ -114,7 +114,7 @@ fn reference(k: &Csr) -> f64 {
 
 /// Whether two local subdomains have the same interface and averages, and matrices of the same pattern.
 pub(super) fn same_pattern(problem: &Problem, jump: &Jump, i: usize, j: usize) -> bool {
-    let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
+    let averaged = |j: usize| jump.averages[j].iter().map(|a| (&a.dofs, &a.weights));
     let (a, b) = (&problem.local[i].k, &problem.local[j].k);
     jump.delta[i] == jump.delta[j]
         && jump.primal[i] == jump.primal[j]

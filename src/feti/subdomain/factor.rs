@@ -11,6 +11,7 @@ use super::retained::Still;
 use super::scaled::ScaledSubdomain;
 use super::which::OperatorForm;
 use crate::feti::cost::forms::{self, SubdomainKind};
+use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{Adaptive, MethodSettings, Scaling};
 use crate::feti::subdomain::equal;
@@ -76,7 +77,7 @@ pub(crate) fn factor(
             keep: kind.keep(),
         };
         let averages = jump.averages[j].iter();
-        let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
+        let averages: Vec<&Average> = averages.collect();
         let places = sub.coordinates.as_deref();
         let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
         // Nothing else could stiffen what no other subdomain and no row shares.

@@ -30,6 +30,7 @@ use super::implicit::Implicit;
 use super::schur::SchurOperators;
 use super::turn::Turn;
 use super::which::OperatorForm;
+use crate::feti::interface::entities::Average;
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 use cholesky::interior::{Condenser, NoFactor};
@@ -125,8 +126,8 @@ impl Gamma {
 }
 
 impl LocalProblem {
-    /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists the dual dofs of
-    /// each primal average. Analyses inside `condenser` must belong to the interface [delta, primal].
+    /// Factors subdomain matrix `k` with the given dual and primal interface dofs and primal averages. Analyses inside
+    /// `condenser` must belong to the interface [delta, primal].
     ///
     /// # Errors
     /// A matrix that is no stiffness matrix, or an error of the solver.
@@ -134,15 +135,23 @@ impl LocalProblem {
         k: &Csr,
         delta: &[u32],
         primal: &[u32],
-        averages: &[&[u32]],
+        averages: &[&Average],
         coordinates: Option<&[[f64; 3]]>,
         mut condenser: Condenser,
         form: OperatorForm,
     ) -> Result<LocalProblem, NoFactor> {
         let mut basis = Basis::default();
         let at = positions(delta);
-        let at = averages.iter().map(|a| at.of(a));
-        at.for_each(|at| basis.push_mean(at));
+        for average in averages {
+            let at = at.of(&average.dofs);
+            match &average.weights {
+                None => basis.push_mean(at),
+                Some(weights) => {
+                    let new = basis.push(at, weights);
+                    assert!(new, "functionals of averages are independent");
+                }
+            }
+        }
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
         if form == OperatorForm::Implicit {
             let interface = [delta, primal].concat();

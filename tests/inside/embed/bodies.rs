@@ -65,14 +65,3 @@ fn all_are_named_or_none() {
     assert_eq!(groups(&[None, None]).unwrap(), None);
     assert_eq!(groups(&[Some(4), Some(1)]).unwrap(), Some(vec![4, 1]));
 }
-
-#[test]
-fn fragments_make_no_more_bodies() {
-    // Eight local matrices in 663 fragments.
-    assert_eq!(number(0, 8, 663), 1);
-    assert_eq!(number(0, 9, 663), 2);
-    assert_eq!(number(0, 24, 24), 3);
-    assert_eq!(number(0, 24, 2), 2);
-    assert_eq!(number(0, 0, 0), 1);
-    assert_eq!((number(5, 8, 663), number(5, 8, 3)), (5, 3));
-}

@@ -41,6 +41,43 @@ fn groups_are_equal_and_connected() {
 }
 
 #[test]
+fn pieces_stay_whole_unless_they_are_large() {
+    // Two pieces, of 16 and of 6 subdomains, whose numbers alternate at first.
+    let place = |piece: usize, s: usize| if s < 6 { 2 * s + piece } else { 6 + s };
+    let of = |piece: usize, bond: Bond| Bond {
+        low: place(piece, bond.low),
+        high: place(piece, bond.high),
+        ..bond
+    };
+    let ordered = |b: Bond| Bond {
+        low: b.low.min(b.high),
+        high: b.low.max(b.high),
+        ..b
+    };
+    let large = grid(4, 4).into_iter().map(|b| ordered(of(0, b)));
+    let small = grid(3, 2).into_iter().map(|b| ordered(of(1, b)));
+    let bonds: Vec<Bond> = large.chain(small).collect();
+    let bodies = |most: usize| {
+        let all = bonds.clone();
+        let group =
+            with_session(move |session| whole_pieces(session, "part_", 22, &all, most).unwrap());
+        connected(&group, &bonds)
+    };
+    let size = |body: &[usize], b: usize| body.iter().filter(|&&x| x == b).count();
+    let sizes = |most: usize| {
+        let body = bodies(most);
+        let all = (0..=*body.iter().max().unwrap()).map(|b| size(&body, b));
+        let mut all: Vec<usize> = all.collect();
+        all.sort_unstable();
+        all
+    };
+    assert_eq!(sizes(1000), [6, 16]);
+    assert_eq!(sizes(16), [6, 16]);
+    assert_eq!(sizes(8), [6, 8, 8]);
+    assert_eq!(sizes(4), [3, 3, 4, 4, 4, 4]);
+}
+
+#[test]
 fn groups_are_round() {
     // The partition must also succeed if corners hold nothing, as in elasticity.
     let mut bonds = grid(4, 4);

@@ -212,11 +212,9 @@ impl Solid {
                 (3, 1) => EntityKind::Face,
                 _ => continue,
             };
-            let entity = entities.entry((side, *c)).or_insert(Entity::new(
-                kind,
-                self.dof(body, *x, *c),
-                Vec::new(),
-            ));
+            let whole = side.iter().fold(0, |sum, &s| 3 * sum + s as u64);
+            let new = Entity::new(kind, self.dof(body, *x, *c), Vec::new());
+            let entity = entities.entry((side, *c)).or_insert(new.of_whole(whole));
             entity.dofs.push(i as u32);
         }
         let at = |x: [usize; 3]| [0, 1, 2].map(|d| if d < dim { x[d] as f64 * h } else { 0.0 });

@@ -32,7 +32,7 @@ fn of_cells(cells: &CellMesh, inside: usize, mesh: &SubdomainMesh, dofs: &[u64])
     let nodes = cells.parts.nodes(inside);
     let mut out = Vec::new();
     for component in 0..c {
-        for (_, dim, list) in cells.parts.entities(inside) {
+        for (whole, (_, dim, list)) in (0..).zip(cells.parts.entities(inside)) {
             let local = |k: &u32| {
                 let node = nodes.binary_search(k).expect("a node of the subdomain");
                 mesh.local_dof(c * node + component)
@@ -40,7 +40,7 @@ fn of_cells(cells: &CellMesh, inside: usize, mesh: &SubdomainMesh, dofs: &[u64])
             let list: Vec<u32> = list.iter().filter_map(local).collect();
             let Some(first) = list.first() else { continue };
             let key = dofs[*first as usize];
-            out.push(Entity::new(kind(dim), key, list));
+            out.push(Entity::new(kind(dim), key, list).of_whole(whole));
         }
     }
     out
@@ -76,7 +76,8 @@ fn of_grid(mesh: &SubdomainMesh, grid: &Grid, dofs: &[u64]) -> Vec<Entity> {
     }
     let entity = |((_, code), list): ((usize, [u8; 3]), Vec<u32>)| {
         let dim = code.iter().filter(|&&k| k == 2).count();
-        Entity::new(kind(dim), dofs[list[0] as usize], list)
+        let whole = code.iter().fold(0, |sum, &k| 3 * sum + u64::from(k));
+        Entity::new(kind(dim), dofs[list[0] as usize], list).of_whole(whole)
     };
     found.into_iter().map(entity).collect()
 }

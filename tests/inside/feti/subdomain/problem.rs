@@ -1,6 +1,7 @@
 //! The operators of one subdomain compared with its matrix.
 
 use super::*;
+use crate::feti::interface::entities::AverageKind;
 use crate::feti::subdomain::which::Operator;
 use crate::matrices::{distance, grid_laplacian, random};
 
@@ -98,7 +99,20 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
     let node = |x: u32, y: u32| x + 11 * y;
     let delta: Vec<u32> = (1..10).chain((1..6).map(|y| node(10, y))).collect();
     let vertices = [node(0, 0), node(10, 0), node(10, 6)];
-    let averages: [&[u32]; 2] = [&delta[..9], &delta[9..]];
+    let average = |kind, dofs: &[u32], weights| Average {
+        kind,
+        key: 0,
+        dofs: dofs.to_vec(),
+        weights,
+    };
+    // The means over both edges, and what changes along the first.
+    let slope = (0..9).map(|i| f64::from(i) - 4.0).collect();
+    let averages = [
+        average(AverageKind::Mean, &delta[..9], None),
+        average(AverageKind::Mean, &delta[9..], None),
+        average(AverageKind::Motion, &delta[..9], Some(slope)),
+    ];
+    let averages: Vec<&Average> = averages.iter().collect();
     let make = |form| {
         LocalProblem::new(
             &k,
