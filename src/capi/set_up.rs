@@ -1,13 +1,12 @@
 //! The set-up of the object behind `FetiFeti`: of everything, or of what has changed since the last one.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 use super::changed::Changed;
 use super::mortar_rows::{IsHeld, MortarRows};
 use super::object::Object;
 use super::tangential::{appended, gaps, TangentialRow};
-use crate::embed::states::states;
+use crate::embed::states::{states, States};
 use crate::embed::{Embedded, GivenRows, Local, SetUp};
 use crate::settings::MethodSettings;
 use crate::Result;
@@ -122,7 +121,7 @@ impl Object {
         self.work = [None, None, None];
         let mut torn = self.torn()?;
         let states = if self.mortars.is_empty() {
-            HashMap::new()
+            States::default()
         } else {
             states(&self.session, &torn)
         };

@@ -16,10 +16,13 @@ use super::nullspace::{annihilates, kernel, Indefinite};
 use super::parts::TornSubdomain;
 use super::sharing::Sharers;
 use super::torn::Torn;
+use crate::feti::subdomain::equal::{hash_matrix, multiple_of};
 use crate::{Error, Result};
 use parallel::exchange::{any, exchange_by_rank};
 use parallel::parcels::Parcels;
 use petsc::Session;
+use rustc_hash::{FxHashMap, FxHasher};
+use std::hash::Hasher;
 
 /// A row annihilates a vector of the host if its terms cancel to less than this fraction: vectors have errors of their
 /// own, such as those of coordinates in single precision.
@@ -69,11 +72,7 @@ impl NearKernels {
             Some(columns) => columns.iter().map(orthogonal).collect(),
             None => parts.iter().map(|p| orthogonal(&constants(p))).collect(),
         };
-        let found = parts.iter().zip(&known).enumerate();
-        let found = found.map(|(j, (part, known))| {
-            kernel(&part.k, known).map_err(|e| indefinite(sharers.first + j, part, e))
-        });
-        let found: Vec<KernelVectors> = session.agree(found.collect::<Result<_>>())?;
+        let found = session.agree(own_kernels(parts, &known, sharers.first))?;
         let beyond: Vec<bool> = found
             .iter()
             .zip(&known)
@@ -161,6 +160,35 @@ impl NearKernels {
             a.min(b)
         }
     }
+}
+
+/// The kernels of the matrices of this rank's parts, of which `first` is the first. Matrices that are multiples of each
+/// other have one kernel, for which one of them is factored.
+fn own_kernels(
+    parts: &[TornSubdomain],
+    known: &[KernelVectors],
+    first: usize,
+) -> Result<Vec<KernelVectors>> {
+    let mut alike: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+    let mut out: Vec<KernelVectors> = Vec::with_capacity(parts.len());
+    for (j, (part, known)) in parts.iter().zip(known).enumerate() {
+        let mut state = FxHasher::default();
+        hash_matrix(&part.k, &mut state);
+        let others = alike.entry(state.finish()).or_default();
+        let same = |&i: &usize| {
+            let (a, b) = (&parts[i].k, &part.k);
+            a.row_ptr == b.row_ptr && a.col == b.col && multiple_of(a, b).is_some()
+        };
+        let found = match others.iter().copied().find(same) {
+            Some(i) => out[i].clone(),
+            None => {
+                others.push(j);
+                kernel(&part.k, known).map_err(|e| indefinite(first + j, part, e))?
+            }
+        };
+        out.push(found);
+    }
+    Ok(out)
 }
 
 /// Whether every column of `found` is a combination of the orthogonal columns `known`.

@@ -1,9 +1,7 @@
 //! Subdomains: the connected parts of the pieces, restricted to unknown dofs.
 
-use std::collections::HashMap;
-
 use super::pieces::TornPiece;
-use super::states::GlobalDofState;
+use super::states::States;
 use super::torn::Torn;
 use crate::{Error, Result};
 use base::linalg::csr::Csr;
@@ -55,14 +53,12 @@ pub struct PieceRows {
 ///
 /// # Errors
 /// A matrix that is not symmetric, or whose diagonal is not that of a stiffness matrix.
-pub fn parts(
-    torn: &Torn,
-    states: &HashMap<u32, GlobalDofState>,
-) -> Result<(Vec<TornSubdomain>, Vec<PieceRows>)> {
+pub fn parts(torn: &Torn, states: &States) -> Result<(Vec<TornSubdomain>, Vec<PieceRows>)> {
     let (mut out, mut rows) = (Vec::new(), Vec::new());
     for piece in &torn.pieces {
-        symmetric(piece, states)?;
-        let label = components(torn, piece, states);
+        let free: Vec<bool> = piece.dofs.iter().map(|d| states[d].is_free()).collect();
+        symmetric(piece, &free)?;
+        let label = components(torn, piece, &free);
         let n_parts = label.iter().flatten().max().map_or(0, |&l| l as usize + 1);
         // Place of each dof in its part.
         let mut place = vec![0; piece.dofs.len()];
@@ -105,7 +101,7 @@ pub fn parts(
                 part: first + l,
                 row: place[i],
             },
-            None if states[&piece.dofs[i]].is_free() => RowDestination::Empty,
+            None if free[i] => RowDestination::Empty,
             None => RowDestination::Known,
         };
         rows.push(PieceRows {
@@ -120,13 +116,9 @@ pub fn parts(
 
 /// The part of each dof of a piece; parts are numbered by lowest dof. `None` for known dofs and for dofs without
 /// stiffness in the piece. All components of a node belong to the same part.
-fn components(
-    torn: &Torn,
-    piece: &TornPiece,
-    states: &HashMap<u32, GlobalDofState>,
-) -> Vec<Option<u32>> {
+fn components(torn: &Torn, piece: &TornPiece, free: &[bool]) -> Vec<Option<u32>> {
     let n = piece.dofs.len();
-    let unknown = |i: usize| states[&piece.dofs[i]].is_free() && !piece.k.row(i).0.is_empty();
+    let unknown = |i: usize| free[i] && !piece.k.row(i).0.is_empty();
     let mut label = vec![None; n];
     let mut next = 0;
     for start in 0..n {
@@ -156,9 +148,9 @@ fn components(
 
 /// Returns an error if the matrix of the unknowns has entries that are no numbers, a diagonal that is not positive, or
 /// is not symmetric. The first fault explains the others: a zero diagonal leaves nothing to compare entries with.
-fn symmetric(piece: &TornPiece, states: &HashMap<u32, GlobalDofState>) -> Result<()> {
-    let free = |i: usize| states[&piece.dofs[i]].is_free();
-    let unknowns = || (0..piece.dofs.len()).filter(|&i| free(i));
+fn symmetric(piece: &TornPiece, free: &[bool]) -> Result<()> {
+    let unknowns = || (0..piece.dofs.len()).filter(|&i| free[i]);
+    let diagonal = piece.k.diagonal();
     for i in unknowns() {
         let (col, val) = piece.k.row(i);
         if let Some((&j, v)) = col.iter().zip(val).find(|(_, v)| !v.is_finite()) {
@@ -189,13 +181,15 @@ fn symmetric(piece: &TornPiece, states: &HashMap<u32, GlobalDofState>) -> Result
     }
     for i in unknowns() {
         let (col, val) = piece.k.row(i);
-        let d = piece.k.get(i, i);
         for (&j, &v) in col.iter().zip(val) {
             let j = j as usize;
+            if !free[j] || j == i {
+                continue;
+            }
             let other = piece.k.get(j, i);
-            let size = (d * piece.k.get(j, j)).abs().sqrt();
+            let size = (diagonal[i] * diagonal[j]).abs().sqrt();
             let same = (v - other).abs() <= SYMMETRIC * size;
-            if free(j) && !same {
+            if !same {
                 return Err(Error::input(format!(
                     "the operator is not symmetric: a local matrix has {v} \
                      at global dofs ({}, {}) and {other} at ({}, {}), expected equal entries",

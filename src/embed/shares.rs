@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::frame::TornValues;
 use super::parts::TornSubdomain;
-use super::states::GlobalDofState;
+use super::states::States;
 use super::torn::Torn;
 use crate::{Error, Result};
 use parallel::halo::Halo;
@@ -67,7 +67,7 @@ impl Shares {
         session: &Session,
         torn: &Torn,
         parts: &[TornSubdomain],
-        states: &HashMap<u32, GlobalDofState>,
+        states: &States,
         (ghosts, halo): (&[u32], &Halo),
     ) -> Result<Shares> {
         let place = |dof: &u32| ghosts.binary_search(dof).expect("all dofs are ghosts") as u32;

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use rustc_hash::FxHashMap;
+
 use super::parts::TornSubdomain;
 use base::linalg::sorted::distinct;
 use bytemuck::{Pod, Zeroable};
@@ -18,7 +20,7 @@ pub struct Sharers {
     /// Subdomains over all ranks.
     pub n_subdomains: usize,
     /// For each shared dof of this rank's subdomains, the subdomains that hold it, increasing.
-    pub of: HashMap<u32, Vec<u32>>,
+    pub of: FxHashMap<u32, Vec<u32>>,
     /// For each local subdomain, its neighbours (increasing) and the local dofs shared with each.
     pub neighbours: Vec<Vec<(u32, Vec<u32>)>>,
     /// The ranks of subdomains.
@@ -102,7 +104,7 @@ impl Sharers {
     }
 
     fn of_part(&self, j: usize, part: &TornSubdomain) -> Vec<(u32, Vec<u32>)> {
-        let mut found: HashMap<u32, Vec<u32>> = HashMap::new();
+        let mut found: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         let me = (self.first + j) as u32;
         for (i, &dof) in part.dofs.iter().enumerate() {
             for &t in self.of(dof).iter().filter(|&&t| t != me) {

@@ -3,13 +3,12 @@
 //! MatZeroRowsColumns and MatZeroRows leave such rows for boundary conditions, u = b / diagonal. The dofs that the host
 //! holds are known too.
 
-use std::collections::HashMap;
-
 use super::torn::Torn;
 use bytemuck::{Pod, Zeroable};
 use mpi::traits::Communicator;
 use parallel::exchange::{exchange, exchange_by_rank};
 use petsc::Session;
+use rustc_hash::FxHashMap;
 
 /// The state of a global dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +42,11 @@ struct DofState {
     diagonal: f64,
 }
 
+/// The states of global dofs.
+pub type States = FxHashMap<u32, GlobalDofState>;
+
 /// The state of every dof that this rank's pieces touch. Collective.
-pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, GlobalDofState> {
+pub fn states(session: &Session, torn: &Torn) -> States {
     let comm = session.comm();
     let size = comm.size() as usize;
     let mut reports: Vec<Vec<DofState>> = vec![Vec::new(); size];
@@ -58,7 +60,7 @@ pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, GlobalDofState> {
         }
     }
     let received = exchange_by_rank(comm, reports);
-    let mut known: HashMap<u32, DofState> = HashMap::new();
+    let mut known: FxHashMap<u32, DofState> = FxHashMap::default();
     for part in received.iter().flatten() {
         let sum = known.entry(part.dof).or_insert(DofState {
             dof: part.dof,

@@ -79,7 +79,7 @@ fn scalar_in_3d() {
 fn averages_of_motions() {
     alone(|| {
         with_session(|session| {
-            let solid = Solid::new(3, [2, 2, 2], elastic(0.3), Rows::Tied);
+            let solid = Solid::new(3, [1, 2, 4], elastic(0.3), Rows::Tied);
             let with = |text, averages| {
                 let primal = Primal::parse(text).expect("constraints");
                 let settings = MethodSettings::default().primal(primal);

@@ -2,8 +2,8 @@
 //! its components.
 //!
 //! The functionals are orthonormal, and perpendicular to the means, but for rounding to seven digits. On an edge or
-//! face with nodes x about their centre, the motions that a mean does not see are the rotations ω × x. Those that vanish
-//! there are left out, as that about a straight edge. The basis follows from the span alone, and its entries are
+//! face with nodes x about their centre, the motions that a mean does not see are the rotations ω × x. Those that
+//! vanish there are left out, as that about a straight edge. The basis follows from the span alone, and its entries are
 //! rounded: the same edge or face elsewhere has the same one, and equal subdomains stay equal.
 //!
 //! The rank of the lowest subdomain that shares an edge or face computes them, and all others take its numbers.

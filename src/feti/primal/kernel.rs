@@ -9,8 +9,12 @@
 //! Matrices have no rows for given values, so N is known at free dofs only. Where every node has one component given,
 //! the translation along it has N c = 0. That is no motion, although K N c = 0: such c are taken out first.
 
+use std::sync::Arc;
+
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
 use parallel::parcels::Parcels;
 
 use crate::substructures::Subdomain;
@@ -27,6 +31,19 @@ const MOVES: f64 = 1e-10;
 /// Eigenvalues of the scaled S_Π below this count as zero. S_Π carries the rounding of the local elimination, about
 /// 1e-14 times the subdomain's condition number.
 const FREE_SPECTRUM: f64 = 1e-10;
+
+/// Eigenvalues of a larger S_Π are looked for only where its pivots leave room for a kernel.
+pub const LARGE: usize = 300;
+
+/// Pivots of S_Π that stay above this part of their diagonal entries leave no kernel. Rounding leaves 1e-14.
+const HELD: f64 = 1e-8;
+
+/// Whether a Cholesky factorisation shows that S_Π has no kernel.
+pub fn is_held(s_pi: &Csr) -> bool {
+    let symbolic = Arc::new(Symbolic::new(s_pi, &[], None));
+    let factor = PartialCholesky::new(s_pi, symbolic);
+    factor.is_ok_and(|(factor, _)| factor.weakest_pivot(s_pi) > HELD)
+}
 
 /// The [`motion_factors`] of subdomains as ranks send them, with the body of each.
 pub type SentFactors = Parcels<usize, f64>;

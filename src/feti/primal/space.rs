@@ -275,6 +275,10 @@ impl PrimalSpace {
         stiffness: f64,
     ) -> (Dense, Dense) {
         if factors.iter().any(|f| f.cols == 0) {
+            let large = body.range.len() > kernel::LARGE;
+            if large && kernel::is_held(&self.matrix.sparse(&body.range)) {
+                return (Dense::zeros(body.range.len(), 0), Dense::default());
+            }
             let s_pi = self.matrix.dense(&body.range);
             return (kernel::null_space(&s_pi, stiffness), Dense::default());
         }

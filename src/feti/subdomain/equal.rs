@@ -96,12 +96,18 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 fn hash(problem: &Problem, jump: &Jump, j: usize) -> u64 {
     let k = &problem.local[j].k;
     let mut state = DefaultHasher::new();
-    (k.n(), k.nnz(), &jump.delta[j], &jump.primal[j]).hash(&mut state);
+    (&jump.delta[j], &jump.primal[j]).hash(&mut state);
+    hash_matrix(k, &mut state);
+    state.finish()
+}
+
+/// Hashes what multiples of a matrix have in common.
+pub fn hash_matrix(k: &Csr, state: &mut impl Hasher) {
+    (k.n(), k.nnz()).hash(state);
     let step = (k.nnz() / SAMPLES).max(1);
     let first = reference(k);
     let samples = k.val.iter().step_by(step);
-    samples.for_each(|v| ((UNIT * v / first).round() as i64).hash(&mut state));
-    state.finish()
+    samples.for_each(|v| ((UNIT * v / first).round() as i64).hash(state));
 }
 
 /// The entry that represents the stiffness of a matrix.
@@ -128,7 +134,15 @@ pub fn multiple(problem: &Problem, jump: &Jump, i: usize, j: usize) -> Option<f6
         return None;
     }
     let (a, b) = (&problem.local[i].k, &problem.local[j].k);
-    if Arc::ptr_eq(a, b) || a.val == b.val {
+    if Arc::ptr_eq(a, b) {
+        return Some(1.0);
+    }
+    multiple_of(a, b)
+}
+
+/// φ with B = φ A, up to the rounding of assembly, for matrices of the same pattern; `None` if there is none.
+pub fn multiple_of(a: &Csr, b: &Csr) -> Option<f64> {
+    if a.val == b.val {
         return Some(1.0);
     }
     let ratio = reference(b) / reference(a);

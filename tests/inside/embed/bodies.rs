@@ -21,7 +21,7 @@ fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
         let sharers = Sharers {
             first: 0,
             n_subdomains: group.len(),
-            of: HashMap::new(),
+            of: Default::default(),
             neighbours: vec![Vec::new(); group.len()],
             owners: Owners::new(session.comm(), 0),
         };
