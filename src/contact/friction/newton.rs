@@ -134,8 +134,8 @@ impl FrictionLagrangian<'_> {
     }
 
     /// Hands the equations at the present point to the method. Springs across slips are at most `softest` times softer
-    /// than others, but for those without which the load drives a body; with 0 there are none. Returns whether other rows had to be put back,
-    /// because what holds leaves a body loose that the load drives. Collective.
+    /// than others, but for those without which the load drives a body; with 0 there are none. Returns whether other
+    /// rows had to be put back, because what holds leaves a body loose that the load drives. Collective.
     fn pose(&mut self, softest: f64) -> Result<bool> {
         let (method, comm) = (self.method, self.method.session.comm());
         let pull = self.point.as_ref().map(|p| self.penalty().pull(p));
