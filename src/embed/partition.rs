@@ -21,7 +21,7 @@ pub fn partitions() -> usize {
 
 /// Subdomains of one body at most where the host says nothing about bodies. One rank factors the primal problem of a
 /// body, in space with operations as the square of their number, while tearing costs iterations of all ranks. With 4096
-/// elastic subdomains in space one body takes half the time of eight; at ten thousand both would take as long.
+/// elastic subdomains in space one body takes half the time of eight (docs/embedding.md).
 pub const MOST: usize = 4096;
 
 /// The groups where the host says nothing: connected pieces of up to `most` subdomains as they are, larger ones in
