@@ -224,6 +224,11 @@ fn ex71_with_many_subdomains_on_a_rank() {
     ] {
         let options = format!("{options} -multi_element");
         let iterations = agrees(&program, &scratch, ranks, "", &options, ours);
-        assert!(iterations > 0, "{options}: there was one subdomain only");
+        // All nodes of an element are vertices: in one body nothing is left to iterate on.
+        let torn = !ours.is_empty();
+        assert!(
+            !torn || iterations > 0,
+            "{options}: there was one subdomain only"
+        );
     }
 }
