@@ -44,8 +44,8 @@ pub fn uncarried_load(
     let pre: Vec<f64> = pre.map(|(&l, law)| -law.project(l)).collect();
     let begun = any(comm, pre.iter().any(|c| *c != 0.0));
     let carriers = Carriers::new(jump, cones);
-    let mut springs = UnilateralSprings::new(comm, natural, (jump, carriers), (e, &pre), tuning);
-    springs.enough = enough;
+    let mut springs =
+        UnilateralSprings::new(comm, natural, (jump, carriers), ((e, enough), &pre), tuning);
     match springs.carry_load(begun) {
         LoadBalance::Carried => Some(KernelMotion::default()),
         LoadBalance::Driven(away) => Some(away),
@@ -82,7 +82,7 @@ impl<'a> UnilateralSprings<'a> {
         comm: &'a SimpleCommunicator,
         natural: &'a NaturalCoarse,
         (jump, carriers): (&'a Jump, Carriers<'a>),
-        (e, gap): (&'a [f64], &'a [f64]),
+        ((e, enough), gap): ((&'a [f64], f64), &'a [f64]),
         tuning: &'a Tuning,
     ) -> UnilateralSprings<'a> {
         let known = natural.known();
@@ -108,7 +108,7 @@ impl<'a> UnilateralSprings<'a> {
             gap,
             e,
             weak,
-            enough: 0.0,
+            enough,
             tuning,
         }
     }
