@@ -148,3 +148,39 @@ fn a_thousand_partitions() {
     }
     good(&out, "a thousand");
 }
+
+/// The program that scripts/yardstick.py makes tables with: what it gives to this library and to other solvers is one
+/// problem, and its boxes are those that the figures of docs/embedding.md belong to.
+#[test]
+fn the_yardstick_measures_one_problem() {
+    let scratch = Scratch::new("embed-yardstick");
+    let program = Program::linked("mpicc", &scratch, "tests/plugin/yardstick.c");
+    let mut ways = vec![
+        "-operator capi -fetifeti_ksp_rtol 1e-9",
+        "-operator aij -pc_type jacobi -ksp_rtol 1e-9",
+    ];
+    if plugin::petsc_version() >= (3, 21) {
+        ways.push("-operator matis -ksp_type fetifeti -ksp_rtol 1e-9");
+    }
+    for (problem, unknowns, parts) in [
+        ("-elastic -n 4,4,4 -box 2,2,2 -shake 0.3 -vary 1", 300, 8),
+        ("-n 12,12 -box 3,2", 156, 6),
+    ] {
+        for ranks in [1, 2] {
+            let norm = |way: &&str| {
+                let out = program.run(ranks, &format!("{problem} {way}"));
+                assert_eq!(out.code, 0, "{problem} {way}: {}", out.all());
+                let line = out.stdout.lines().next().unwrap_or_default();
+                assert_eq!(after(line, "unknowns"), Some(unknowns), "{line}");
+                assert_eq!(after(line, "parts"), Some(parts), "{line}");
+                // Residuals of the multipliers stand for those of the unknowns up to a factor.
+                let residual: f64 = after(line, "residual").expect("a residual");
+                assert!(residual <= 3e-8, "{problem} {way}: {line}");
+                after::<f64>(line, "norm").expect("the norm of the solution")
+            };
+            let norms: Vec<f64> = ways.iter().map(norm).collect();
+            let apart = |n: &f64| (n - norms[0]).abs() > 1e-6 * norms[0];
+            assert!(!norms.iter().any(apart), "{problem}: {norms:?}");
+        }
+    }
+}
