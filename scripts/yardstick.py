@@ -57,6 +57,11 @@ def local(package, kind):
     return " ".join(f"-pc_bddc_{s}_pc_type {kind} -pc_bddc_{s}_pc_factor_mat_solver_type {package}" for s in sides)
 
 
+def petsc(*asked):
+    """What pkg-config says about PETSc."""
+    return subprocess.run(["pkg-config", *asked, "PETSc"], check=True, capture_output=True, text=True).stdout.strip()
+
+
 class Runs:
     """The program, built in a folder of its own, and how it is started."""
 
@@ -64,16 +69,14 @@ class Runs:
         self.ranks, self.rtol, self.folder = ranks, rtol, Path(folder)
         for name in ("libfetifeti.so", "libfetifeti.so.0"):
             (self.folder / name).symlink_to(library.resolve())
-        config = subprocess.run(["pkg-config", "--cflags", "--libs", "PETSc"], check=True, capture_output=True, text=True)
+        config = shlex.split(petsc("--cflags", "--libs"))
         subprocess.run(
             ["mpicc", "-O2", "-DWITH_METIS", ROOT / "tests/plugin/yardstick.c", "-o", self.folder / "yardstick",
-             "-Wno-unused-function", f"-I{ROOT}/wrappers", *shlex.split(config.stdout), f"-L{folder}", "-lfetifeti",
+             "-Wno-unused-function", f"-I{ROOT}/wrappers", *config, f"-L{folder}", "-lfetifeti",
              f"-Wl,-rpath,{folder}", "-lmetis", "-lm"], check=True)
-        version = subprocess.run(["pkg-config", "--modversion", "PETSc"], check=True, capture_output=True, text=True)
-        self.version = version.stdout.strip()
+        self.version = petsc("--modversion")
         self.separate = tuple(map(int, self.version.split(".")[:2])) >= (3, 21)
-        prefix = subprocess.run(["pkg-config", "--variable=prefix", "PETSc"], check=True, capture_output=True, text=True)
-        header = Path(prefix.stdout.strip()) / "include/petscconf.h"
+        header = Path(petsc("--variable=includedir")) / "petscconf.h"
         text = header.read_text() if header.exists() else ""
         self.has = {p for p in ("HYPRE", "SUITESPARSE", "MUMPS") if re.search(rf"#define PETSC_HAVE_{p} ", text)}
 
