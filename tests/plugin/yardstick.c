@@ -7,11 +7,14 @@
      aij      the assembled matrix
      capi     the C API of this library, for which any PETSc will do
 
+   -motions 0 leaves the near-null space out, -corners gives PCBDDC vertices that hold the subdomains, -columns N solves
+   for N more right-hand sides, by KSPMatSolve() and one after the other.
+
    Everything else is said by the options of KSP and PC. scripts/yardstick.py makes tables of it.
 */
 static char help[] = "Times a solver on subdomains.\n";
 
-#include "parts.h"
+#include "corners.h"
 #include "fetifeti.h"
 #include <sys/resource.h>
 
@@ -121,27 +124,6 @@ static PetscErrorCode Motions(const Problem *p, Vec u, MatNullSpace *space)
   PetscFunctionReturn(0);
 }
 
-/* The position of every unknown of this rank: PCBDDC picks vertices by them. */
-static PetscErrorCode Positions(const Problem *p, Vec u, PC pc)
-{
-  PetscInt   first, last, c, d, k, bs = p->components, dim = p->mesh.dim;
-  PetscReal *x;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetOwnershipRange(u, &first, &last));
-  PetscCall(PetscMalloc1((last - first) * dim + 1, &x));
-  for (c = 0; c < p->mesh.nodes; c++)
-    for (d = 0; d < bs; d++)
-      for (k = 0; k < dim; k++) {
-        PetscInt dof = p->number[c] * bs + d;
-
-        if (p->number[c] >= 0 && dof >= first && dof < last) x[(dof - first) * dim + k] = p->mesh.x[3 * c + k];
-      }
-  PetscCall(PCSetCoordinates(pc, dim, last - first, x));
-  PetscCall(PetscFree(x));
-  PetscFunctionReturn(0);
-}
-
 /* A load that is nowhere zero, the same for every number of ranks. */
 static PetscErrorCode Load(Vec b)
 {
@@ -175,6 +157,46 @@ static PetscErrorCode Now(double *seconds, double *megabytes)
   PetscFunctionReturn(0);
 }
 
+/* Seconds for `columns` right-hand sides by KSPMatSolve(), and one after the other on a solver of its own. */
+static PetscErrorCode Columns(Mat A, KSP ksp, PetscInt columns)
+{
+  Mat      B, X;
+  Vec      b, x;
+  KSP      alone;
+  double   begin, middle, end, memory;
+  PetscInt i, n, its, most;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n, NULL));
+  PetscCall(MatCreateDense(PETSC_COMM_WORLD, n, PETSC_DECIDE, PETSC_DECIDE, columns, NULL, &B));
+  PetscCall(MatSetRandom(B, NULL));
+  PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
+  PetscCall(KSPCreate(PETSC_COMM_WORLD, &alone));
+  PetscCall(KSPSetOperators(alone, A, A));
+  PetscCall(KSPSetNormType(alone, KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetFromOptions(alone));
+  PetscCall(KSPSetUp(alone));
+  PetscCall(Now(&begin, &memory));
+  PetscCall(KSPMatSolve(ksp, B, X));
+  PetscCall(Now(&middle, &memory));
+  PetscCall(KSPGetIterationNumber(ksp, &most));
+  PetscCall(MatCreateVecs(A, &x, NULL));
+  for (i = 0; i < columns; i++) {
+    PetscCall(MatDenseGetColumnVecRead(B, i, &b));
+    PetscCall(KSPSolve(alone, b, x));
+    PetscCall(MatDenseRestoreColumnVecRead(B, i, &b));
+  }
+  PetscCall(Now(&end, &memory));
+  PetscCall(KSPGetIterationNumber(alone, &its));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "columns %d together %.4f iterations %d alone %.4f iterations %d\n",
+                        (int)columns, middle - begin, (int)most, end - middle, (int)its));
+  PetscCall(KSPDestroy(&alone));
+  PetscCall(VecDestroy(&x));
+  PetscCall(MatDestroy(&B));
+  PetscCall(MatDestroy(&X));
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   Problem            p;
@@ -186,14 +208,16 @@ int main(int argc, char **argv)
   FetiFeti           ff;
   MatNullSpace       space;
   KSPConvergedReason reason;
-  PetscInt           its, n;
+  PetscInt           its, n, columns = 0;
   PetscReal          large = 0, small = 0, residual, load, size;
-  PetscBool          capi, aij, apart, bddc, motions = PETSC_TRUE;
+  PetscBool          capi, aij, apart, bddc, motions = PETSC_TRUE, corners = PETSC_FALSE;
   double             begin, ready, end, before, after;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, help));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-operator", how, sizeof(how), NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-motions", &motions, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-columns", &columns, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-corners", &corners, NULL));
   PetscCall(PetscStrcmp(how, "capi", &capi));
   PetscCall(PetscStrcmp(how, "aij", &aij));
   PetscCall(PetscStrcmp(how, "matis", &apart));
@@ -228,6 +252,7 @@ int main(int argc, char **argv)
     PetscCall(KSPGetPC(ksp, &pc));
     PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBDDC, &bddc));
     if (bddc && p.components > 1) PetscCall(Positions(&p, b, pc));
+    if (bddc && corners) PetscCall(Corners(&p, pc));
     PetscCall(Now(&begin, &before));
     PetscCall(KSPSetUp(ksp));
     PetscCall(KSPSetUpOnBlocks(ksp));
@@ -237,6 +262,7 @@ int main(int argc, char **argv)
     PetscCall(KSPGetIterationNumber(ksp, &its));
     PetscCall(KSPGetConvergedReason(ksp, &reason));
     if (its > 0) PetscCall(KSPComputeExtremeSingularValues(ksp, &large, &small));
+    if (columns > 0) PetscCall(Columns(A, ksp, columns));
     PetscCall(KSPDestroy(&ksp));
   }
   PetscCall(VecDuplicate(b, &r));
