@@ -10,6 +10,7 @@ fn main() {
     for file in [
         "kspfetifeti.c",
         "kspbodies.c",
+        "kspmatsolve.c",
         "kspregister.c",
         "pcfetifeti.c",
         "kspfetifeti.h",
@@ -25,6 +26,7 @@ fn main() {
     cc::Build::new()
         .file("wrappers/kspfetifeti.c")
         .file("wrappers/kspbodies.c")
+        .file("wrappers/kspmatsolve.c")
         .file("wrappers/kspregister.c")
         .file("wrappers/pcfetifeti.c")
         .includes(include.split(':').filter(|dir| !dir.is_empty()))

@@ -6,7 +6,9 @@ use std::cell::Ref;
 
 use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
+use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::solve::Judge;
+use crate::feti::krylov::together::Begun;
 use crate::feti::operators::dual::Dual;
 use crate::feti::{
     Communication, FreeMotion, LinearMethod, LinearSolution, Numbers, SetUpSummary, Spectrum,
@@ -122,15 +124,30 @@ impl FetiFeti {
     /// # Errors
     /// As [`FetiFeti::solve`], and those of `enough`.
     pub fn solve_until(&mut self, enough: &Judge) -> Result<Solution> {
-        self.judged(enough)
+        self.judged(None, enough)
     }
 
     /// [`FetiFeti::solve_until`] for a host whose monitors look at the solver during the solve.
-    pub(crate) fn judged(&self, enough: &Judge) -> Result<Solution> {
+    pub(crate) fn judged(&self, begun: Option<Begun>, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         self.check_idle()?;
-        let found = self.method.solve(Some(enough))?;
+        let found = self.method.solve_begun(begun, Some(enough))?;
         self.certified(found, Vec::new())
+    }
+
+    /// The present loads, condensed to the interfaces, to be given to [`FetiFeti::together`]. Collective.
+    pub(crate) fn condensed(&self) -> Loads {
+        Loads::new(self.problem(), &self.dual())
+    }
+
+    /// The iterations for several loads at once, to be finished by [`FetiFeti::judged`] one by one; see
+    /// [`LinearMethod::together`]. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`].
+    pub(crate) fn together(&self, loads: Vec<Loads>) -> Result<Vec<Option<Begun>>> {
+        let _staged = self.solve_stage.scope()?;
+        self.method.together(loads)
     }
 
     /// Solves as [`FetiFeti::solve`], from a given state of the contact loop and with a call after each of its steps.

@@ -1,12 +1,13 @@
 /*
    KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. The method is in
    Rust (src/embed, src/capi). This file has the functions that every KSP type must have; kspbodies.c has the functions
-   for bodies, kspregister.c makes the types known, pcfetifeti.c has the PC.
+   for bodies, kspmatsolve.c those for several right-hand sides, kspregister.c makes the types known, pcfetifeti.c has
+   the PC.
 */
 #include "kspfetifeti.h"
 
 /* Converts a status of Rust to a PETSc error. */
-static PetscErrorCode Raise(KSP ksp, int status)
+PetscErrorCode ff_raise(KSP ksp, int status)
 {
   int         code;
   const char *message = fetifeti_plugin_message(&code);
@@ -38,7 +39,7 @@ static PetscErrorCode KSPMonitor_FETIFETI(KSP inner, PetscInt it, PetscReal rnor
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
+PetscErrorCode ff_wishes(KSP ksp, FetiFetiWishes *wishes)
 {
   PetscFunctionBegin;
   wishes->body   = (int)((KSP_FETIFETI *)ksp->data)->body;
@@ -49,6 +50,7 @@ static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
   wishes->abstol = ksp->abstol;
   wishes->divtol = ksp->divtol;
   wishes->max_it = (int)ksp->max_it;
+  wishes->begun  = (int)((KSP_FETIFETI *)ksp->data)->begun;
   PetscFunctionReturn(0);
 }
 
@@ -108,7 +110,7 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
      options and motions would be another one. */
   if (ff->stale || ff->whole || ff->failed || ff->label || near != ff->near || null != ff->null)
     PetscCall(KSPReset_FETIFETI(ksp));
-  PetscCall(Wishes(ksp, &wishes));
+  PetscCall(ff_wishes(ksp, &wishes));
   if (ff->label) {
     PetscInt body;
 
@@ -125,7 +127,7 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   if (status == FF_UNFIT && !ksp->errorifnotconverged) {
     PetscCall(Explain(ksp, KSP_DIVERGED_PC_FAILED));
     ff->failed = KSP_DIVERGED_PC_FAILED;
-  } else if (status) PetscCall(Raise(ksp, status));
+  } else if (status) PetscCall(ff_raise(ksp, status));
   /* Reading a local matrix counts as a change of the operator. */
   PetscCall(PetscObjectStateGet((PetscObject)A, &ff->state));
   if (ff->solver) {
@@ -143,6 +145,19 @@ static PetscErrorCode Residual(Mat A, Vec B, Vec X, Vec R, PetscReal *norm)
   PetscCall(MatMult(A, X, R));
   PetscCall(VecAYPX(R, -1.0, B));
   PetscCall(VecNorm(R, NORM_2, norm));
+  PetscFunctionReturn(0);
+}
+
+/* A right-hand side without its part in the kernel, and what an initial guess leaves of it; R may be B. */
+PetscErrorCode ff_load(KSP ksp, Mat A, MatNullSpace kernel, Vec b, Vec x, Vec B, Vec R, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  PetscCall(VecCopy(b, B));
+  if (kernel) PetscCall(MatNullSpaceRemove(kernel, B));
+  if (R != B) PetscCall(VecCopy(B, R));
+  if (ksp->guess_zero) PetscCall(VecNorm(R, NORM_2, norm));
+  else PetscCall(Residual(A, B, x, R, norm));
+  if (kernel) PetscCall(MatNullSpaceRemove(kernel, R));
   PetscFunctionReturn(0);
 }
 
@@ -171,22 +186,17 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscCall(VecDuplicate(ksp->vec_rhs, &B));
   PetscCall(VecDuplicate(B, &R));
   PetscCall(VecDuplicate(ksp->vec_sol, &D));
-  PetscCall(VecCopy(ksp->vec_rhs, B));
-  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, B));
   ff->base = 0;
   ff->last = -1;
   ff->running     = PETSC_TRUE;
   result.largest  = 0;
   result.smallest = 0;
   result.explained = 0;
-  PetscCall(Wishes(ksp, &wishes));
+  PetscCall(ff_wishes(ksp, &wishes));
+  PetscCall(ff_load(ksp, A, nullsp, ksp->vec_rhs, ksp->vec_sol, B, R, &norm));
   PetscCall(VecNorm(B, NORM_2, &size));
-  PetscCall(VecCopy(B, R));
-  norm = size;
-  if (!ksp->guess_zero) PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
   /* The inner KSP tests the jumps between subdomains; the residual of the host's equations is tested in addition. */
   if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
-  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
   if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) {
     /* the guess is a solution */
     result.iterations = 0;
@@ -203,7 +213,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscCall(VecDestroy(&R));
   PetscCall(VecDestroy(&D));
   ff->running = PETSC_FALSE;
-  if (status) PetscCall(Raise(ksp, status));
+  if (status) PetscCall(ff_raise(ksp, status));
   ff->largest  = result.largest;
   ff->smallest = result.smallest;
   if (nullsp) { /* vectors that the operator does not map to zero are no kernel, even if they are attached as one */
@@ -285,7 +295,7 @@ static PetscErrorCode KSPBuildSolution_FETIFETI(KSP ksp, Vec v, Vec *V)
   PetscCall(VecDuplicate(ksp->vec_sol, &now));
   if (ff->solver) {
     status = fetifeti_plugin_solution(ff->solver, now, &there);
-    if (status) PetscCall(Raise(ksp, status));
+    if (status) PetscCall(ff_raise(ksp, status));
   }
   if (there) PetscCall(VecAXPY(now, 1.0, ksp->vec_sol)); /* the iteration computes a correction of the initial guess */
   else PetscCall(VecCopy(ksp->vec_sol, now));
@@ -360,10 +370,12 @@ PetscErrorCode KSPCreate_FETIFETI(KSP ksp)
 
   PetscCall(PetscNew(&ff));
   ff->body                               = -1;
+  ff->begun                              = -1;
   ff->true_residual                      = PETSC_TRUE;
   ksp->data                              = (void *)ff;
   ksp->ops->setup                        = KSPSetUp_FETIFETI;
   ksp->ops->solve                        = KSPSolve_FETIFETI;
+  ksp->ops->matsolve                     = KSPMatSolve_FETIFETI;
   ksp->ops->reset                        = KSPReset_FETIFETI;
   ksp->ops->destroy                      = KSPDestroy_FETIFETI;
   ksp->ops->view                         = KSPView_FETIFETI;

@@ -22,6 +22,7 @@ typedef struct {
   PetscInt         last;  /* last iteration that the monitors have seen; -1: none */
   PetscBool        running; /* the inner KSP is running */
   PetscReal        largest, smallest; /* eigenvalue estimates from the longest run of the inner KSP in the last solve */
+  PetscInt         begun; /* the column of KSPMatSolve() that is solved; -1: none */
   KSPConvergedReason failed; /* why there is no solver */
 } KSP_FETIFETI;
 
@@ -45,6 +46,7 @@ typedef struct {
   double goal;     /* norm of b - A x to reach, or -1: no such test */
   double rtol, abstol, divtol;
   int    max_it;
+  int    begun; /* the number of the right-hand side in the last fetifeti_plugin_together(), or -1 */
 } FetiFetiWishes;
 
 typedef struct {
@@ -64,6 +66,7 @@ typedef struct {
 /* *solver is NULL, or a solver that is brought up to date where the matrix has the same structure. */
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);
 int  fetifeti_plugin_solve(void *solver, Mat a, const FetiFetiWishes *wishes, Vec b, Vec x, FetiFetiResult *result);
+int  fetifeti_plugin_together(void *solver, const FetiFetiWishes *wishes, int n, const Vec b[]);
 int  fetifeti_plugin_solution(void *solver, Vec x, int *there);
 KSP  fetifeti_plugin_inner(void *solver);
 void fetifeti_plugin_facts(void *solver, FetiFetiFacts *facts);
@@ -84,6 +87,15 @@ int ff_plugin_get_ksp(PC pc, KSP *ksp);
 
 /* Creates a KSP of this type (kspfetifeti.c). */
 PetscErrorCode KSPCreate_FETIFETI(KSP ksp);
+
+/* Converts a status of Rust to a PETSc error; the requests to Rust; b without its part in the kernel (B), and what the
+   initial guess x leaves of it (R, which may be B) with its norm (kspfetifeti.c). */
+PetscErrorCode ff_raise(KSP ksp, int status);
+PetscErrorCode ff_wishes(KSP ksp, FetiFetiWishes *wishes);
+PetscErrorCode ff_load(KSP ksp, Mat A, MatNullSpace kernel, Vec b, Vec x, Vec B, Vec R, PetscReal *norm);
+
+/* Solves for all columns of B (kspmatsolve.c). */
+PetscErrorCode KSPMatSolve_FETIFETI(KSP ksp, Mat B, Mat X);
 
 /* Creates a PC of this type (pcfetifeti.c). */
 PetscErrorCode PCCreate_FETIFETI(PC pc);

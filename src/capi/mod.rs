@@ -22,6 +22,7 @@ mod nested;
 mod numbering;
 mod object;
 mod plugin;
+mod plugin_together;
 mod results;
 mod rows;
 mod set_up;

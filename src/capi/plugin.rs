@@ -5,13 +5,14 @@ use super::handle::lent;
 use crate::embed::torn::marked;
 use crate::embed::{Embedded, Local, SetUp, SetUpWork, Torn};
 use crate::feti::krylov::solve::JudgeTiming;
+use crate::feti::krylov::together::Begun;
 use crate::settings::MethodSettings;
 use crate::status::Status;
 use crate::{Error, Result};
 use base::ErrorKind;
 use petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use std::borrow::Cow;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{c_char, c_int, c_void, CStr};
 
 /// The requests of the outer KSP.
@@ -25,6 +26,8 @@ pub struct Wishes {
     abstol: f64,
     divtol: f64,
     max_it: c_int,
+    /// The number of the right-hand side among those of the last `fetifeti_plugin_together`, or -1.
+    begun: c_int,
 }
 
 /// Longest name of an option's value with its end, FETIFETI_NAME in wrappers/kspfetifeti.h.
@@ -49,8 +52,10 @@ const LINE: usize = 256;
 
 /// The solver behind a KSP.
 pub struct PluginSolver {
-    embedded: Embedded,
+    pub(super) embedded: Embedded,
     work: SetUpWork,
+    /// Iterations that have been run for several right-hand sides together.
+    pub(super) begun: RefCell<Vec<Option<Begun>>>,
 }
 
 /// The result of a solve.
@@ -126,7 +131,11 @@ fn setup(
         None => Ok((whole(session, a, prefix, wishes)?, SetUp::Whole)),
     };
     let (embedded, _) = work.count(session, make, |made| Some(made.1))?;
-    Ok(PluginSolver { embedded, work })
+    Ok(PluginSolver {
+        embedded,
+        work,
+        begun: RefCell::default(),
+    })
 }
 
 /// The solver for other entries of its matrix, or another one of the same structure; `None` if the structure is
@@ -214,13 +223,16 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     status("KSPSolve_FETIFETI", |at_work| {
         // A monitor may ask for the present solution while this runs: hence no unique reference.
         // SAFETY: by the caller.
-        let (solver, wishes) = unsafe { (&(*solver.cast::<PluginSolver>()).embedded, &*wishes) };
+        let (plugin, wishes) = unsafe { (&*solver.cast::<PluginSolver>(), &*wishes) };
+        let solver = &plugin.embedded;
         *at_work = Some(solver.session().clone());
+        let begun = usize::try_from(wishes.begun).ok();
+        let begun = begun.and_then(|c| plugin.begun.borrow_mut().get_mut(c)?.take());
         let (b, x) = (lent(b, solver.session())?, lent(x, solver.session())?);
         forward(solver, wishes)?;
         let (a, r) = (lent(a, solver.session())?, b.duplicate()?);
         let best = Cell::new(f64::INFINITY);
-        let mut outcome = solver.solve(&b, &x, &|x, look| {
+        let mut outcome = solver.solve(begun, &b, &x, &|x, look| {
             if wishes.goal < 0.0 {
                 // The host asked for the test of the jumps alone, which has not been made before the first iteration.
                 return Ok((look == JudgeTiming::Before).then_some(1.0));
@@ -273,7 +285,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
 }
 
 /// Applies the outer KSP's tolerances, unless options of the inner KSP override them.
-fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
+pub(super) fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     let ksp = solver.solver().ksp().clone();
     let options = Options::new(solver.session(), &solver.solver().settings().method.prefix);
     let now = ksp.tolerances()?;
@@ -330,7 +342,7 @@ pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP 
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut ViewData) {
     // SAFETY: by the caller.
-    let PluginSolver { embedded, work } = unsafe { &*solver.cast::<PluginSolver>() };
+    let PluginSolver { embedded, work, .. } = unsafe { &*solver.cast::<PluginSolver>() };
     let solver = embedded.solver();
     let (known, problem) = (solver.facts(), solver.problem());
     // SAFETY: by the caller.

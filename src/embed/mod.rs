@@ -40,6 +40,7 @@ pub(crate) mod sharing;
 pub(crate) mod solver;
 pub(crate) mod states;
 pub(crate) mod subdomains;
+mod together;
 pub(crate) mod torn;
 pub(crate) mod touched;
 pub(crate) mod work;

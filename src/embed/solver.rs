@@ -22,6 +22,7 @@ use super::torn::{GivenRows, Torn};
 use super::touched::RankProblem;
 use crate::contact::{Observer, State as ContactState};
 use crate::feti::krylov::solve::JudgeTiming;
+use crate::feti::krylov::together::Begun;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
@@ -29,6 +30,9 @@ use crate::substructures::{Law, Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::halo::Halo;
 use petsc::{Event, Session, Vec as PetscVec};
+
+/// Looks at the solution x for the host: the factor by which the residual should fall further, or `None`.
+pub type HostJudge<'a> = dyn Fn(&PetscVec, JudgeTiming) -> Result<Option<f64>> + 'a;
 
 /// The result of a solve.
 #[derive(Debug, Clone)]
@@ -235,18 +239,19 @@ impl Embedded {
 
     /// Solves for the right-hand side b. Whenever x satisfies the tolerance of the dual problem, and before an
     /// iteration that may have nothing to do, `enough` is called: it returns the factor by which the residual should
-    /// fall further, or `None`. Collective.
+    /// fall further, or `None`. The iteration may have been run already, together with others. Collective.
     ///
     /// # Errors
     /// A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
     pub fn solve(
         &self,
+        begun: Option<Begun>,
         b: &PetscVec,
         x: &PetscVec,
-        enough: &dyn Fn(&PetscVec, JudgeTiming) -> Result<Option<f64>>,
+        enough: &HostJudge,
     ) -> Result<EmbeddedResult> {
         self.load(b, None)?;
-        let solution = self.solver().judged(&|u, look| {
+        let solution = self.solver().judged(begun, &|u, look| {
             self.put_together(u, x)?;
             enough(x, look)
         })?;
@@ -318,7 +323,7 @@ impl Embedded {
     }
 
     /// Passes loads and gaps to the solver. Collective.
-    fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
+    pub(super) fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
         let mut load = vec![0.0; self.frame.ghosts.len()];
         self.halo.fetch(b, &mut load)?;
         self.session.agree(self.shares.finite(&load))?;

@@ -171,6 +171,7 @@ const FUNCTIONS: &[&str] = &[
     "KSPAppendOptionsPrefix",
     "KSPSetFromOptions",
     "KSPSetUp",
+    "KSPMonitor",
     "KSPSolve",
     "KSPSolveTranspose",
     "KSPReset",

@@ -139,6 +139,11 @@ impl Ksp {
         Ok((rtol, atol, dtol, max_it))
     }
 
+    /// Calls the monitors with the norm of a residual, for iterations that run outside the solver.
+    pub fn monitor(&self, iteration: usize, norm: f64) -> Result<()> {
+        petsc!(KSPMonitor(self.raw(), iteration as PetscInt, norm))
+    }
+
     /// Sets the norm of the convergence test.
     pub fn set_norm_type(&self, norm: NormType) -> Result<()> {
         let norm = match norm {

@@ -21,3 +21,4 @@ pub mod solve;
 pub mod system;
 pub mod tally;
 pub mod target;
+pub mod together;

@@ -17,6 +17,7 @@ use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
 use super::residual::{Iterate, ROUNDING};
 use super::target::{to_the_end, Target};
+use super::together::Begun;
 use crate::feti::method::LinearMethod;
 use crate::status::Status;
 use crate::Result;
@@ -64,15 +65,36 @@ impl LinearMethod {
     /// # Errors
     /// A load that moves a body which nothing holds; PETSc's own errors, and those of `enough`.
     pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
+        self.solve_begun(None, enough)
+    }
+
+    /// [`LinearMethod::solve`] for a load whose iteration may have been run together with others. Collective.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn solve_begun(
+        &self,
+        begun: Option<Begun>,
+        enough: Option<&Judge>,
+    ) -> Result<LinearSolution> {
         let clock = Instant::now();
         let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
+        if let Some(begun) = &begun {
+            at.lambda.copy_from(&begun.lambda)?;
+        }
         let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
         let run = match self.at_once(&mut at, r, enough)? {
-            Some(run) => run,
+            Some(run) => match begun {
+                Some(begun) => begun.run,
+                None => run,
+            },
             None => {
-                let target = Target::new(self, r)?;
+                let target = Target::new(self, begun.as_ref().map_or(r, |b| b.reference))?;
                 let control = IterationControl::to(target.at_first(), at.residual.size).observed();
-                let run = self.reach(&mut at, control, None)?; /*     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
+                let run = match begun {
+                    Some(begun) => begun.run,
+                    None => self.reach(&mut at, control, None)?, /*   Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
+                };
                 self.meet(&mut at, run, control, &target, enough)? /* y ← S̃⁺(g − Bᵀ λ) + R α             */
             }
         };

@@ -266,6 +266,26 @@ impl DualSystem {
         self.keep(&self.x, y)
     }
 
+    /// ys ← Pᵀ F xs for xs in V, several columns at once, without deflation. Collective.
+    pub(super) fn apply_many(&self, xs: &[PetscVec], ys: &[PetscVec]) -> Result<()> {
+        self.heed()?;
+        let dual = self.dual();
+        dual.f_many(xs, ys)?;
+        ys.iter().try_for_each(|y| dual.p_transpose(y))
+    }
+
+    /// ys ← P M⁻¹ xs for residuals xs in the range of Pᵀ, several columns at once, without deflation. Collective.
+    pub(super) fn precondition_many(&self, xs: &[PetscVec], ys: &[PetscVec]) -> Result<()> {
+        let dual = self.dual();
+        dual.m_many(xs, ys)?;
+        ys.iter().try_for_each(|y| dual.p(y))
+    }
+
+    /// Whether nothing is deflated.
+    pub(super) fn is_undeflated(&self) -> bool {
+        self.deflation.borrow().is_none()
+    }
+
     /// y ← P_2 P M⁻¹ Pᵀ x for residuals x with P_2ᵀ x = x.
     pub(super) fn precondition(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();

@@ -120,6 +120,12 @@ impl Dual {
         self.stiffness.f_mult(x, y)
     }
 
+    /// ys ← F xs, several columns at once. Collective.
+    pub fn f_many(&self, xs: &[PetscVec], ys: &[PetscVec]) -> Result<()> {
+        let _timed = self.events[0].scope()?;
+        self.stiffness.f_mult_many(xs, ys, |_| {})
+    }
+
     /// y ← M⁻¹ x; with springs in the rows y ← (Π M⁻¹ Πᵀ + X) x.
     pub fn m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let _timed = self.events[1].scope()?;
