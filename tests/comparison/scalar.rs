@@ -71,6 +71,7 @@ fn all_methods_agree_on_tied_bodies() {
     let methods: Vec<(&str, Option<usize>, usize)> = report
         .rows
         .iter()
+        .filter(|r| r.run.method != "hpddm")
         .map(|r| (r.run.method.as_str(), r.run.subdomains, r.run.ranks))
         .collect();
     assert_eq!(
@@ -131,7 +132,16 @@ fn options_of_a_baseline_reach_it_alone_and_its_failure_is_a_row() {
         !solved(gamg) && gamg.run.error.is_some_and(|e| e > 1e-6),
         "{gamg:?}"
     );
+    let options = &gamg.run.options;
+    assert!(
+        options.contains(" -pc_type gamg") && options.contains(" -ksp_max_it 2"),
+        "{options}"
+    );
     let hypre = row(&report, "hypre", None);
+    assert!(
+        hypre.run.options.contains(" -pc_type no_such_thing"),
+        "{hypre:?}"
+    );
     let message = hypre.run.message.as_deref().expect("a message");
     assert!(message.contains("no_such_thing"), "{message}");
     assert_eq!((hypre.run.error, hypre.run.iterations), (None, None));
@@ -151,6 +161,13 @@ fn a_second_try_is_told_with_its_options() {
     for bddc in report.rows.iter().filter(|r| r.run.method == "bddc") {
         let options = bddc.run.rescue.as_deref().expect("options of a second try");
         assert!(options.starts_with("-bddc_"), "{options}");
+        // What the row ran with has them, without the prefix.
+        let all = &bddc.run.options;
+        assert!(
+            all.starts_with("-ksp_type cg ") && all.contains(" -ksp_max_it 1"),
+            "{all}"
+        );
+        assert!(all.contains(" -pc_bddc_use_change_of_basis true"), "{all}");
         assert!(!solved(bddc), "one iteration is too few: {bddc:?}");
     }
 }

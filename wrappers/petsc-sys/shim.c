@@ -289,6 +289,26 @@ int ff_allow_repeated(Mat mat)
   return (int)FFAllowRepeated(mat);
 }
 
+int ff_has_pc(const char *type, int *found)
+{
+  PetscErrorCode (*create)(PC) = NULL;
+
+  PetscCall(PCInitializePackage());
+  PetscCall(PetscFunctionListFind(PCList, type, &create));
+  *found = create ? 1 : 0;
+  return 0;
+}
+
+int ff_has_cholesky(const char *package, int *found)
+{
+  PetscBool known = PETSC_FALSE;
+
+  PetscCall(MatInitializePackage());
+  PetscCall(MatSolverTypeGet(package, MATSEQAIJ, MAT_FACTOR_CHOLESKY, &known, NULL, NULL));
+  *found = known ? 1 : 0;
+  return 0;
+}
+
 /* ---- log, citations, printing ---- */
 
 int ff_counters(double counts[3])

@@ -66,6 +66,10 @@ int ff_is_repeated(Mat mat, int *repeated);
 /* Allows that, before the map is set. */
 int ff_allow_repeated(Mat mat);
 
+/* Whether this PETSc has a type of PC, and a package for Cholesky factorisations on one process. */
+int ff_has_pc(const char *type, int *found);
+int ff_has_cholesky(const char *package, int *found);
+
 /* Whether any option begins with `start` (dash included). */
 int ff_options_any(const char *start, PetscBool *found);
 /* Messages, their bytes and all-reduces that PETSc has counted on this rank; 0 where it was built without its log. */

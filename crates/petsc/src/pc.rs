@@ -67,6 +67,11 @@ impl Pc {
         ))
     }
 
+    /// PCBDDC: local dofs of this rank that are primal, whatever else is. Collective.
+    pub fn bddc_set_primal_vertices_local(&self, dofs: &Is) -> Result<()> {
+        petsc!(PCBDDCSetPrimalVerticesLocalIS(self.raw(), dofs.raw()))
+    }
+
     /// PCBDDC: the local dofs of this rank's subdomain by field. Collective.
     pub fn bddc_set_fields_local(&self, fields: &[Is]) -> Result<()> {
         let mut raw: std::vec::Vec<sys::IS> = fields.iter().map(|is| is.raw()).collect();

@@ -40,8 +40,21 @@ pub struct AssembledSystem {
     pub b: PetscVec,
     /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: residuals are relative to it.
     pub reference: f64,
-    /// The component of each local unknown of this rank in the unassembled format.
+    /// The local unknowns of this rank in the unassembled format.
+    pub local: LocalUnknowns,
+}
+
+/// The local unknowns of a rank, part after part: each has all arrays at its place.
+#[derive(Debug, Default)]
+pub struct LocalUnknowns {
+    /// The global unknown, increasing in each part.
+    pub unknowns: Vec<PetscInt>,
+    /// Its component.
     pub fields: Vec<usize>,
+    /// Its node in the layout.
+    pub nodes: Vec<u64>,
+    /// Where parts begin, and where the last one ends.
+    pub starts: Vec<usize>,
 }
 
 impl AssembledSystem {
@@ -62,9 +75,9 @@ impl AssembledSystem {
         let (b, reference) = part.load(session, &mine, unknowns, format)?;
         drop(mine);
         let n = b.ownership_range().len();
-        let (places, k) = (&part.unknowns, &part.k);
+        let (places, k) = (&part.local.unknowns, &part.k);
         let unassembled = Mat::unassembled(session, n, places, k, separate)?;
-        let fields = part.fields;
+        let local = part.local;
         let a = match format {
             MatrixFormat::Assembled => unassembled.convert("aij")?,
             MatrixFormat::Unassembled | MatrixFormat::Separate => unassembled,
@@ -79,7 +92,7 @@ impl AssembledSystem {
             a,
             b,
             reference,
-            fields,
+            local,
         })
     }
 
@@ -202,10 +215,7 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &UnknownLayout) -
 
 /// The subdomains of one rank as PETSc's domain decompositions take them: merged into one, or one after the other.
 struct RankMatrix {
-    /// Global unknown of each local one, increasing in each part.
-    unknowns: Vec<PetscInt>,
-    /// The component of each unknown.
-    fields: Vec<usize>,
+    local: LocalUnknowns,
     k: Mat,
     f: PetscVec,
 }
@@ -232,7 +242,7 @@ impl RankMatrix {
             }
         };
         let b = PetscVec::mpi(session, owned.len())?;
-        Scatter::new(&b, &self.unknowns, &self.f)?.reverse_add(&self.f, &b)?;
+        Scatter::new(&b, &self.local.unknowns, &self.f)?.reverse_add(&self.f, &b)?;
         let plain = unknowns.are_all() && !unknowns.layout.has_dependent();
         let mut reference = match plain {
             true => b.norm2()?,
@@ -320,20 +330,20 @@ impl RankMatrix {
         k.set_flag(MatFlag::Symmetric)?;
         let f = PetscVec::from_slice(session, &f)?;
         let components = all.layout.components();
-        let fields = match (unknowns.iter().min(), unknowns.iter().max()) {
-            (Some(&first), Some(&last)) => {
-                let places = all.places(first as usize..last as usize + 1);
-                let place = |g: &PetscInt| places[(g - first) as usize] as usize;
-                unknowns.iter().map(|g| place(g) % components).collect()
-            }
-            _ => Vec::new(),
-        };
-        Ok(RankMatrix {
+        let (first, last) = (unknowns.iter().min(), unknowns.iter().max());
+        let range = first.map_or(0, |g| *g as usize)..last.map_or(0, |g| *g as usize + 1);
+        let places = all.places(range.clone());
+        let place = |g: &PetscInt| places[*g as usize - range.start] as usize;
+        let local = LocalUnknowns {
+            fields: unknowns.iter().map(|g| place(g) % components).collect(),
+            nodes: unknowns
+                .iter()
+                .map(|g| (place(g) / components) as u64)
+                .collect(),
             unknowns,
-            fields,
-            k,
-            f,
-        })
+            starts,
+        };
+        Ok(RankMatrix { local, k, f })
     }
 }
 

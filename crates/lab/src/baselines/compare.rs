@@ -47,7 +47,7 @@ pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
-            baseline.set_options(session, plan.rtol, BaselineCase::of(&scene))?;
+            baseline.set_options(session, plan.rtol, BaselineCase::of(session, &scene)?)?;
         }
     }
     on_first_rank(session, || run(session, wanted, &scene, &plan))

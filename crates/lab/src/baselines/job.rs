@@ -40,7 +40,7 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
             let case = BaselineCase {
                 rescue: *rescue,
-                ..BaselineCase::of(&scene)
+                ..BaselineCase::of(session, &scene)?
             };
             row.set_options(session, job.rtol, case)?;
             match row.format {

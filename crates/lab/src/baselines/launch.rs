@@ -130,6 +130,8 @@ impl Launcher {
             .arg(verb)
             .arg(job);
         command.args(&self.petsc);
+        // Every job leaves the options of the others; the parent says which ones nobody asked for.
+        command.args(["-options_left", "no"]);
         environment(&mut command, self.limit);
         command
             .stdin(Stdio::null())

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
+use super::corners;
 use super::second::SecondLoad;
 use super::table::Baseline;
 use super::task::{ContactOutcome, Job, Outcome};
@@ -39,13 +40,15 @@ pub fn solver(session: &Session, row: &Baseline, a: &Mat) -> Result<(Ksp, Ksp)> 
     Ok((ksp, krylov))
 }
 
-/// Gives PCBDDC, alone or inside KSPFETIDP, the component and the position of each local unknown.
+/// Gives PCBDDC, alone or inside KSPFETIDP, the component and the position of each local unknown. It picks vertices
+/// that hold a subdomain by these positions where each rank has one subdomain; where a rank has several, it is given
+/// them.
 fn tell(
     session: &Session,
     scene: &Scene,
     ksp: &Ksp,
     unknowns: &Unknowns,
-    system: &AssembledSystem,
+    (system, format): (&AssembledSystem, MatrixFormat),
 ) -> Result<()> {
     if scene.components() == 1 {
         return Ok(());
@@ -55,7 +58,7 @@ fn tell(
         _ => ksp.pc()?,
     };
     let list = |c: usize| -> Vec<PetscInt> {
-        let of = system.fields.iter().enumerate();
+        let of = system.local.fields.iter().enumerate();
         of.filter(|(_, f)| **f == c)
             .map(|(i, _)| i as PetscInt)
             .collect()
@@ -65,6 +68,10 @@ fn tell(
         .collect();
     bddc.bddc_set_fields_local(&sets?)?;
     let layout = unknowns.layout;
+    if format == MatrixFormat::Separate {
+        let vertices = corners::corners(session, scene, layout, system)?;
+        bddc.bddc_set_primal_vertices_local(&Is::general(session, Comm::Own, &vertices)?)?;
+    }
     let node = |place: u64| layout.position(place / layout.components() as u64);
     let places = unknowns.places(system.b.ownership_range());
     let points: Vec<[f64; 3]> = places.into_iter().map(node).collect();
@@ -115,7 +122,7 @@ pub fn baseline(
     kernel.attach(&system.a)?;
     let (ksp, krylov) = solver(session, row, &system.a)?;
     if format != MatrixFormat::Assembled {
-        tell(session, scene, &ksp, &unknowns, &system)?;
+        tell(session, scene, &ksp, &unknowns, (&system, format))?;
     }
     let ((), setup) = timed(session, || ksp.setup())?;
     let first = krylov.tolerances()?.0;

@@ -91,6 +91,9 @@ impl<'a> Methods<'a> {
         if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {
             return Ok(Ran::not(format!("not for this scene: {trouble}")));
         }
+        if let Some(missing) = &run.missing {
+            return Ok(Ran::not(missing.clone()));
+        }
         if run.ranks > self.plan.max_ranks {
             return Ok(Ran::not(format!(
                 "needs {} ranks, one for each of its parts; {} are allowed (-compare_max_ranks)",
@@ -109,7 +112,7 @@ impl<'a> Methods<'a> {
             let message = "solves the equations of our active set, and there is none";
             return Ok(Ran::not(message.to_string()));
         }
-        let rescuer = run.baseline.filter(|b| !b.rescue.is_empty());
+        let rescuer = run.baseline.filter(|b| b.has_rescue());
         let (mut outcome, mut printed) = self.job(k, rescued)?;
         let mut rescue = rescued.then_some(()).and(rescuer);
         if !rescued && rescuer.is_some() && worth_a_second_try(&outcome) {
@@ -229,6 +232,9 @@ pub fn forwarded(petsc: &[String]) -> Vec<String> {
 pub fn blank(run: &PlannedRun) -> MethodRun {
     MethodRun {
         method: run.name().to_string(),
+        layout: run.layout.to_string(),
+        options: run.options[0].clone(),
+        given: run.given.clone(),
         subdomains: run.parts,
         ranks: run.ranks,
         threads: run.threads,
@@ -242,6 +248,9 @@ pub fn row(run: &PlannedRun, ran: Ran) -> CompareRow {
         run: blank(run),
         ..CompareRow::default()
     };
+    if ran.rescue.is_some() {
+        row.run.options = run.options[1].clone();
+    }
     row.run.rescue = ran.rescue;
     match ran.outcome {
         Err(failure) => row.run.message = Some(failure.message),
@@ -249,6 +258,7 @@ pub fn row(run: &PlannedRun, ran: Ran) -> CompareRow {
             row.seconds = seconds(&o);
             row.memory_mb = Some(o.memory / 1e6);
             row.memory_at_start_mb = Some(o.memory_at_start / 1e6);
+            row.run.options += &o.rtol.map_or(String::new(), |rtol| run.tolerance(rtol));
             row.run = MethodRun {
                 kappa: o.kappa,
                 iterations: o.iterations,

@@ -1,7 +1,7 @@
 //! PETSc's own solvers on the same problem: PCBDDC, KSPFETIDP, GAMG, hypre's BoomerAMG and MUMPS beside ours.
 //!
 //! ```text
-//! Scene ──> System (A u = b, one unknown per tied point) ──> KSP by a row of option strings ──> Outcome
+//! Scene ──> System (A u = b, one unknown per tied point) ──> KSP by the options of a peer ──> Outcome
 //!      └──> FetiFeti ───────────────────────────────────────────────────────────────────────> Outcome
 //!                                             all solutions ──> judge (direct solution) ─────> Verdict
 //! ```
@@ -19,12 +19,14 @@ mod attempt;
 mod bench;
 mod compare;
 mod contact;
+mod corners;
 mod job;
 mod judge;
 pub mod launch;
 mod linear;
 mod methods;
 mod ours;
+mod peers;
 mod plan;
 mod second;
 pub(crate) mod single;
@@ -36,5 +38,5 @@ pub use compare::{compare, Comparison};
 pub use job::run as run_job;
 pub use judge::judge;
 pub use ours::solve as solve_ours;
-pub use table::BASELINES;
+pub use peers::BASELINES;
 pub use task::{BaselineTask, Job};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::table::Baseline;
+use super::table::{Baseline, BaselineCase};
 use super::task::BaselineTask;
 use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
@@ -34,6 +34,12 @@ pub struct PlannedRun {
     pub threads: usize,
     /// Parts of the domain that the method sees.
     pub parts: Option<usize>,
+    /// Its options without the tolerance, as a user writes them; those with the second try's behind.
+    pub options: [String; 2],
+    /// The functions of PETSc by which it is told more than options say.
+    pub given: String,
+    /// The sentence where this PETSc lacks the method.
+    pub missing: Option<String>,
 }
 
 impl PlannedRun {
@@ -45,6 +51,17 @@ impl PlannedRun {
     /// Method and ranks, for progress messages.
     pub fn title(&self) -> String {
         format!("{} on {}", self.name(), ranks(self.ranks))
+    }
+
+    /// The option of this tolerance of the method's own residual, behind others.
+    pub fn tolerance(&self, rtol: f64) -> String {
+        // Three digits, rounded to the smaller number: written again it asks for no less.
+        let digits = 10_f64.powf(rtol.log10().floor() - 2.0);
+        let rounded = (rtol / digits * (1.0 + 1e-12)).floor() * digits;
+        let text = format!("{rounded:.2e}").replace(".00e", "e");
+        let krylov = self.baseline.map_or("fetifeti_", |b| b.krylov);
+        let space = if self.options[0].is_empty() { "" } else { " " };
+        format!("{space}-{krylov}ksp_rtol {text}")
     }
 
     /// The job; `active`: rows of the last known active set.
@@ -146,7 +163,7 @@ impl BaselinePlan {
             cores,
             max_ranks,
             limit: Duration::from_secs(limit as u64),
-            runs: runs(scene, cores, baselines, layouts),
+            runs: runs(session, scene, cores, baselines, layouts)?,
         })
     }
 }
@@ -154,11 +171,18 @@ impl BaselinePlan {
 /// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on fewer parts; the
 /// others on all cores.
 fn runs(
+    session: &Session,
     scene: &Scene,
     cores: usize,
     baselines: &[&'static Baseline],
     layouts: Layouts,
-) -> Vec<PlannedRun> {
+) -> Result<Vec<PlannedRun>> {
+    let first = BaselineCase::of(session, scene)?;
+    let second = BaselineCase {
+        rescue: true,
+        ..first
+    };
+    let given = ours_given(session)?;
     let (subdomains, bodies) = (scene.n_subdomains(), scene.n_bodies());
     let ours = |layout, ranks, threads| PlannedRun {
         baseline: None,
@@ -166,20 +190,33 @@ fn runs(
         ranks,
         threads,
         parts: Some(subdomains),
+        options: [given.clone(), given.clone()],
+        given: String::new(),
+        missing: None,
     };
     let mut runs = vec![ours("threads", 1, cores)];
     if cores > 1 && subdomains > 1 {
         runs.push(ours("ranks", cores.min(subdomains), 1));
     }
     for &baseline in baselines {
+        let options = [
+            baseline.written(session, &first)?,
+            baseline.written(session, &second)?,
+        ];
+        let missing = baseline.missing(session)?;
         let on = |layout, ranks, parts| PlannedRun {
             baseline: Some(baseline),
             layout,
             ranks,
             threads: 1,
             parts,
+            options: options.clone(),
+            given: baseline.given(&first),
+            missing: missing.clone(),
         };
         match baseline.format {
+            // Its row says why, once.
+            _ if missing.is_some() => runs.push(on("core", cores, None)),
             MatrixFormat::Assembled => runs.push(on("core", cores, None)),
             MatrixFormat::Unassembled | MatrixFormat::Separate => {
                 runs.push(on("subdomain", subdomains, Some(subdomains)));
@@ -197,5 +234,16 @@ fn runs(
             }
         }
     }
-    runs
+    Ok(runs)
+}
+
+/// The options that the user gave ours, without the tolerance.
+fn ours_given(session: &Session) -> Result<String> {
+    let mut all = Options::new(session, "fetifeti_").all()?;
+    all.retain(|(name, _)| name != "-fetifeti_ksp_rtol");
+    let written = all.iter().map(|(name, value)| format!("{name} {value}"));
+    let written: Vec<String> = written
+        .map(|option| option.trim_end().to_string())
+        .collect();
+    Ok(written.join(" "))
 }

@@ -1,9 +1,10 @@
-//! The baselines: rows of option strings on the same problem, to the same residual.
+//! The baselines: PETSc's solvers by options on the same problem, to the same residual.
 //!
-//! Every row has a prefix of its own, so that a researcher can tune it on the command line of `compare`:
-//! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps
-//! `-fetifeti_`.
+//! [`peers`](super::peers) lists them. Every one has a prefix of its own, so that a researcher can tune it on the
+//! command line of `compare`: `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_levels 1`, `-fetidp_fetidp_ksp_monitor`.
+//! Ours keeps `-fetifeti_`.
 
+use super::peers::BASELINES;
 use crate::assembled::near::Near;
 use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
@@ -17,25 +18,74 @@ pub struct Baseline {
     pub name: &'static str,
     /// A description.
     pub description: &'static str,
+    /// A part that PETSc must have been built with.
+    pub needs: Needs,
     /// The matrix it takes.
     pub format: MatrixFormat,
     /// The prefix of the Krylov method's options behind the row's own prefix: KSPFETIDP iterates in an inner solver.
     pub krylov: &'static str,
-    /// Options (without the prefix) that hold unless the user says otherwise.
-    pub options: &'static [(&'static str, &'static str)],
-    /// Further options in three dimensions.
-    pub space: &'static [(&'static str, &'static str)],
-    /// Further options in elasticity; they override those in three dimensions.
-    pub elastic: &'static [(&'static str, &'static str)],
+    /// The prefixes of its solvers of subdomains, which are given the best package that PETSc has.
+    pub local: &'static [&'static str],
+    /// Options that hold unless the user says otherwise; later ones override earlier ones.
+    pub sets: &'static [OptionSet],
     /// The rigid motions that the solver is given.
     pub near: Near,
-    /// Further options in contact loops, where the matrix changes and has entries that are zero.
-    pub contact: &'static [(&'static str, &'static str)],
     /// In contact loops the preconditioner is kept until more than this part of the inequalities has changed since it
     /// was built. The value is the fastest one on the model problem.
     pub lag: f64,
-    /// Further options for a second try, where the first one does not converge.
-    pub rescue: &'static [(&'static str, &'static str)],
+}
+
+/// A part of PETSc that not every build has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing.
+    Nothing,
+    /// A type of preconditioner.
+    Pc(&'static str),
+    /// A package for factorisations.
+    Package(&'static str),
+}
+
+/// Options (without the prefix of the baseline) for some problems.
+#[derive(Debug, PartialEq)]
+pub struct OptionSet {
+    /// The problems.
+    pub when: When,
+    /// Names and values.
+    pub options: &'static [(&'static str, &'static str)],
+}
+
+/// The problems for which options hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum When {
+    /// All problems.
+    Always,
+    /// Problems in three dimensions.
+    Space,
+    /// Elastic ones.
+    Elastic,
+    /// Elastic ones in three dimensions.
+    ElasticSpace,
+    /// Elastic ones in three dimensions, with PETSc 3.21 and later.
+    ElasticSpaceNewer,
+    /// Contact loops, where the matrix changes and has entries that are zero.
+    Contact,
+    /// A second try, where the first one did not converge.
+    Rescue,
+}
+
+impl When {
+    fn holds(self, case: &BaselineCase) -> bool {
+        match self {
+            When::Always => true,
+            When::Space => case.space,
+            When::Elastic => case.elastic,
+            When::ElasticSpace => case.elastic && case.space,
+            When::ElasticSpaceNewer => case.elastic && case.space && case.newer,
+            When::Contact => case.contact,
+            When::Rescue => case.rescue,
+        }
+    }
 }
 
 impl Baseline {
@@ -49,14 +99,57 @@ impl Baseline {
         format!("{}_", self.name)
     }
 
-    /// The options of the second try, as the user would write them.
+    /// Whether it has options for a second try.
+    pub fn has_rescue(&self) -> bool {
+        self.sets.iter().any(|set| set.when == When::Rescue)
+    }
+
+    /// The options of the second try, as the user of `compare` would write them.
     pub fn rescue_options(&self) -> String {
-        let written = |(name, value): &(&str, &str)| format!("-{}{name} {value}", self.prefix());
-        self.rescue
-            .iter()
-            .map(written)
-            .collect::<Vec<_>>()
-            .join(" ")
+        let sets = self.sets.iter().filter(|set| set.when == When::Rescue);
+        let all = sets.flat_map(|set| set.options);
+        let written = all.map(|(name, value)| format!("-{}{name} {value}", self.prefix()));
+        written.collect::<Vec<_>>().join(" ")
+    }
+
+    /// The sentence where this PETSc lacks what it needs.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn missing(&self, session: &Session) -> Result<Option<String>> {
+        let (has, what) = match self.needs {
+            Needs::Nothing => return Ok(None),
+            Needs::Pc(name) => (petsc::has_pc(session, name)?, name),
+            Needs::Package(name) => (petsc::has_cholesky(session, name)?, name),
+        };
+        let version = petsc::version()?;
+        Ok((!has).then(|| format!("this PETSc ({version}) was built without {what}")))
+    }
+
+    /// The options for a problem, without the prefix, as they stand unless the user says otherwise.
+    pub fn options(&self, case: &BaselineCase) -> Vec<(String, String)> {
+        let mut all: Vec<(String, String)> = Vec::new();
+        let mut set = |name: String, value: &str| match all.iter_mut().find(|o| o.0 == name) {
+            Some(known) => known.1 = value.to_string(),
+            None => all.push((name, value.to_string())),
+        };
+        let package = case.local.into_iter().flat_map(|package| {
+            let both = |at: &'static str| {
+                [
+                    (format!("{at}pc_type"), "cholesky"),
+                    (format!("{at}pc_factor_mat_solver_type"), package),
+                ]
+            };
+            self.local.iter().copied().flat_map(both)
+        });
+        let sets = self.sets.iter().filter(|set| set.when.holds(case));
+        let listed = sets.flat_map(|set| set.options);
+        let listed = listed.map(|(name, value)| (name.to_string(), *value));
+        let (first, rest): (Vec<_>, Vec<_>) = listed.partition(|(name, _)| name == "ksp_type");
+        for (name, value) in first.into_iter().chain(rest).chain(package) {
+            set(name, value);
+        }
+        all
     }
 
     /// Puts the options into the database, where those of the user override them, and lists them under `-help`.
@@ -69,27 +162,57 @@ impl Baseline {
             "compare --with {}: {}",
             self.name, self.description
         ))?;
-        let rtol = format!("{rtol:e}");
-        let tolerance = (format!("{}ksp_rtol", self.krylov), rtol.as_str());
-        let further = [
-            (true, self.options),
-            (case.elastic, self.elastic),
-            (case.space, self.space),
-            (case.contact, self.contact),
-            (case.rescue, self.rescue),
-        ];
-        let fixed = further
-            .iter()
-            .filter(|(holds, _)| *holds)
-            .flat_map(|(_, list)| list.iter())
-            .map(|(name, value)| (name.to_string(), *value));
-        for (name, value) in fixed.chain([tolerance]) {
-            options.set_default(&name, value)?;
-            options.list(&name, value, "set by compare")?;
+        let tolerance = (format!("{}ksp_rtol", self.krylov), format!("{rtol:e}"));
+        for (name, value) in self.options(&case).into_iter().chain([tolerance]) {
+            options.set_default(&name, &value)?;
+            options.list(&name, &value, "set by compare")?;
         }
         Ok(())
     }
+
+    /// The options of a run without its tolerance, as a user writes them in a program of his own: those for the
+    /// problem, overridden and followed by those that the user of `compare` gave.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn written(&self, session: &Session, case: &BaselineCase) -> Result<String> {
+        let prefix = format!("-{}", self.prefix());
+        let mut given = Options::new(session, &self.prefix()).all()?;
+        let tolerance = format!("{prefix}{}ksp_rtol", self.krylov);
+        given.retain(|(name, _)| *name != tolerance);
+        let mut all = self.options(case);
+        for (name, value) in given {
+            let name = name[prefix.len()..].to_string();
+            match all.iter_mut().find(|option| option.0 == name) {
+                Some(known) => known.1 = value,
+                None => all.push((name, value)),
+            }
+        }
+        let written = all.iter().map(|(name, value)| format!("-{name} {value}"));
+        let written: Vec<String> = written
+            .map(|option| option.trim_end().to_string())
+            .collect();
+        Ok(written.join(" "))
+    }
+
+    /// The functions of PETSc by which it is told more than options say, for a table.
+    pub fn given(&self, case: &BaselineCase) -> String {
+        let motions = match self.near {
+            _ if !case.elastic => "",
+            Near::None => "",
+            Near::Rotations => "MatSetNearNullSpace (rotations)",
+            Near::Motions => "MatSetNearNullSpace (rigid motions)",
+        };
+        match self.format {
+            MatrixFormat::Assembled => motions.to_string(),
+            _ if motions.is_empty() => String::new(),
+            _ => format!("{motions}, PCBDDCSetDofsSplittingLocal, PCSetCoordinates"),
+        }
+    }
 }
+
+/// Packages for the subdomains of domain decompositions, the best first.
+const LOCAL: [&str; 2] = ["cholmod", "mumps"];
 
 /// The properties of a run that its options depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,148 +221,38 @@ pub struct BaselineCase {
     pub space: bool,
     /// Whether it is elasticity.
     pub elastic: bool,
+    /// Whether PETSc is 3.21 or later.
+    pub newer: bool,
     /// Whether there are inequalities.
     pub contact: bool,
     /// Whether this is the second try.
     pub rescue: bool,
+    /// The package for subdomains; `None`: PETSc's own.
+    pub local: Option<&'static str>,
 }
 
 impl BaselineCase {
     /// The properties of `scene`, for the first try.
-    pub fn of(scene: &Scene) -> BaselineCase {
-        BaselineCase {
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn of(session: &Session, scene: &Scene) -> Result<BaselineCase> {
+        let mut local = None;
+        for package in LOCAL {
+            if local.is_none() && petsc::has_cholesky(session, package)? {
+                local = Some(package);
+            }
+        }
+        Ok(BaselineCase {
             space: scene.dim() == 3,
             elastic: scene.components() > 1,
+            newer: petsc::REPEATS,
             contact: scene.has_contact(),
             rescue: false,
-        }
+            local,
+        })
     }
 }
-
-/// The baselines in the order in which they are run.
-pub const BASELINES: [Baseline; 5] = [
-    Baseline {
-        name: "bddc",
-        description: "CG with PCBDDC, vertices, averages over edges and faces primal",
-        format: MatrixFormat::Unassembled,
-        krylov: "",
-        options: &[
-            ("ksp_type", "cg"),
-            ("ksp_norm_type", "unpreconditioned"),
-            ("pc_type", "bddc"),
-            // Scaling by the stiffness follows jumps of the coefficient; PETSc's default scales by multiplicity.
-            ("pc_is_use_stiffness_scaling", "true"),
-            ("pc_bddc_dirichlet_pc_type", "cholesky"),
-            ("pc_bddc_dirichlet_pc_factor_mat_solver_type", "cholmod"),
-            ("pc_bddc_neumann_pc_type", "cholesky"),
-            ("pc_bddc_neumann_pc_factor_mat_solver_type", "cholmod"),
-        ],
-        space: &[("pc_bddc_use_faces", "true")],
-        // Parts have too few vertices to have no kernel: PETSc picks more by their positions. Making averages over
-        // edges and faces unknowns instead took sixteen times as long on large faces.
-        elastic: &[("pc_bddc_corner_selection", "true")],
-        near: Near::Motions,
-        contact: &[],
-        lag: 0.0,
-        // A floating part without a vertex gets a singular local problem unless averages become unknowns, which costs
-        // the other problems time and memory.
-        rescue: &[("pc_bddc_use_change_of_basis", "true")],
-    },
-    Baseline {
-        name: "fetidp",
-        description:
-            "KSPFETIDP, CG on fully redundant multipliers, the primal constraints of PCBDDC",
-        format: MatrixFormat::Unassembled,
-        krylov: "fetidp_",
-        options: &[
-            ("ksp_type", "fetidp"),
-            ("ksp_fetidp_fullyredundant", "true"),
-            ("fetidp_ksp_type", "cg"),
-            ("fetidp_ksp_norm_type", "unpreconditioned"),
-            ("fetidp_bddc_pc_is_use_stiffness_scaling", "true"),
-            ("fetidp_bddc_pc_bddc_dirichlet_pc_type", "cholesky"),
-            (
-                "fetidp_bddc_pc_bddc_dirichlet_pc_factor_mat_solver_type",
-                "cholmod",
-            ),
-            ("fetidp_bddc_pc_bddc_neumann_pc_type", "cholesky"),
-            (
-                "fetidp_bddc_pc_bddc_neumann_pc_factor_mat_solver_type",
-                "cholmod",
-            ),
-        ],
-        space: &[("fetidp_bddc_pc_bddc_use_faces", "true")],
-        elastic: &[("fetidp_bddc_pc_bddc_corner_selection", "true")],
-        near: Near::Motions,
-        contact: &[],
-        lag: 0.0,
-        rescue: &[("fetidp_bddc_pc_bddc_use_change_of_basis", "true")],
-    },
-    Baseline {
-        name: "gamg",
-        description: "CG with PETSc's smoothed aggregation",
-        format: MatrixFormat::Assembled,
-        krylov: "",
-        options: &[
-            ("ksp_type", "cg"),
-            ("ksp_norm_type", "unpreconditioned"),
-            ("pc_type", "gamg"),
-        ],
-        space: &[],
-        elastic: &[],
-        near: Near::Motions,
-        // Unknowns that a step has released need a place on the coarse grids, and zero entries are no connections.
-        contact: &[
-            ("pc_gamg_reuse_interpolation", "false"),
-            ("pc_gamg_threshold", "0"),
-        ],
-        lag: 0.05,
-        rescue: &[],
-    },
-    Baseline {
-        name: "hypre",
-        description: "CG with hypre's BoomerAMG",
-        format: MatrixFormat::Assembled,
-        krylov: "",
-        options: &[
-            ("ksp_type", "cg"),
-            ("ksp_norm_type", "unpreconditioned"),
-            ("pc_type", "hypre"),
-            ("pc_hypre_type", "boomeramg"),
-        ],
-        // The recommendation of hypre's manual in three dimensions. In elasticity every component is coarsened by
-        // itself, and components are connected through the smoother only (the block size makes it so): nodal coarsening
-        // with rotations in the interpolation took ten times as long.
-        space: &[
-            ("pc_hypre_boomeramg_coarsen_type", "HMIS"),
-            ("pc_hypre_boomeramg_interp_type", "ext+i"),
-            ("pc_hypre_boomeramg_P_max", "4"),
-            ("pc_hypre_boomeramg_strong_threshold", "0.5"),
-        ],
-        elastic: &[("pc_hypre_boomeramg_strong_threshold", "0.5")],
-        near: Near::Rotations,
-        contact: &[],
-        lag: 0.0,
-        rescue: &[],
-    },
-    Baseline {
-        name: "mumps",
-        description: "sparse Cholesky by MUMPS",
-        format: MatrixFormat::Assembled,
-        krylov: "",
-        options: &[
-            ("ksp_type", "preonly"),
-            ("pc_type", "cholesky"),
-            ("pc_factor_mat_solver_type", "mumps"),
-        ],
-        space: &[],
-        elastic: &[],
-        near: Near::None,
-        contact: &[],
-        lag: 0.0,
-        rescue: &[],
-    },
-];
 
 /// The baselines that `--with` names, in the order of the table; all of them for an empty list.
 ///

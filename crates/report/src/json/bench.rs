@@ -47,9 +47,6 @@ pub struct BenchRow {
     /// The method and its result.
     #[serde(flatten)]
     pub run: MethodRun,
-    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
-    /// `subdomain`.
-    pub layout: String,
     /// Wall-clock time over the rounds that converged.
     pub seconds: BenchSeconds,
     /// The median total over that of the fastest variant of ours.

@@ -59,6 +59,10 @@ pub struct CompareRow {
 pub struct MethodRun {
     /// The method, such as `fetifeti`, `bddc`, `gamg`.
     pub method: String,
+    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
+    /// `subdomain`, or `packed`: a rank per core, whose MATIS keeps its subdomains apart.
+    #[serde(default)]
+    pub layout: String,
     /// Number of parts of the domain for the method; `null` for methods without parts.
     pub subdomains: Option<usize>,
     /// MPI ranks.
@@ -89,6 +93,13 @@ pub struct MethodRun {
     pub converged: bool,
     /// PETSc's name for the reason why the iteration ended; in `bench` the last one.
     pub converged_reason: String,
+    /// The options of PETSc that it ran with, those of a second try among them, as a user would write them in a program
+    /// of his own; for ours those that the user gave.
+    #[serde(default)]
+    pub options: String,
+    /// The functions of PETSc by which a baseline is told more than options say.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub given: String,
     /// Options of the second try, where the first one failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rescue: Option<String>,

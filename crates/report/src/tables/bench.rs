@@ -1,6 +1,6 @@
 //! The benchmark as tables and as a picture.
 
-use super::methods::{outcome, outer, ranks_and_threads};
+use super::methods::{options, outcome, outer, ranks_and_threads, LAYOUTS};
 use super::table::{count, fixed, scientific, Table};
 use crate::drawing::canvas::Colour;
 use crate::drawing::ticks::Scale;
@@ -18,6 +18,7 @@ pub fn text(report: &BenchReport) -> String {
          total: set-up and solve, with its smallest and largest value; \
          ratio: the total over that of the fastest of ours;\n\
          again: the solve for a second load, with what was set up for the first{}.\n\
+         {LAYOUTS}\n\
          parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); \
          MB: largest resident memory, summed over the ranks;\n\
          net: without what each rank holds before it has read the problem; \
@@ -49,6 +50,7 @@ fn case_text(case: &BenchCase) -> String {
     let net = |r: &BenchRow| Some(median(r.memory_mb)? - median(r.memory_at_start_mb)?);
     let table = Table::of(&case.methods)
         .words("method", |r| &r.run.method)
+        .words("layout", |r| &r.run.layout)
         .numbers("parts", |r| count(r.run.subdomains))
         .numbers("ranks", |r| ranks_and_threads(&r.run))
         .when(contact, |t| t.numbers("outer", |r| outer(&r.run)))
@@ -68,7 +70,7 @@ fn case_text(case: &BenchCase) -> String {
         .words("outcome", |r| outcome(&r.run, |text| note(r, text)))
         .table();
     format!(
-        "{}: {}, {} bodies, {} subdomains, {} unknowns, ‖b − Au‖ ≤ {} ‖b‖, {} rounds\n\n{table}{notes}{}\n",
+        "{}: {}, {} bodies, {} subdomains, {} unknowns, ‖b − Au‖ ≤ {} ‖b‖, {} rounds\n\n{table}{notes}{}\n{}\n",
         case.case,
         case.facts.scene,
         case.facts.bodies,
@@ -76,7 +78,8 @@ fn case_text(case: &BenchCase) -> String {
         case.facts.dofs,
         scientific(Some(case.facts.rtol)),
         case.rounds,
-        sum(case)
+        sum(case),
+        options(case.methods.iter().map(|r| &r.run)),
     )
 }
 
@@ -98,7 +101,7 @@ fn sum(case: &BenchCase) -> String {
 
 /// A method with its layout; the label is the same in every case.
 fn label(row: &BenchRow) -> String {
-    match (row.layout.as_str(), row.run.subdomains) {
+    match (row.run.layout.as_str(), row.run.subdomains) {
         (layout @ ("threads" | "ranks"), _) => format!("{}, {layout}", row.run.method),
         (layout, Some(_)) => format!("{}, a part per {layout}", row.run.method),
         (_, None) => row.run.method.clone(),
@@ -112,7 +115,7 @@ pub fn csv(report: &BenchReport) -> Table {
     let mut table = Table::of(rows)
         .exact("case", |(c, _)| c.case.as_str())
         .exact("method", |(_, r)| r.run.method.as_str())
-        .exact("layout", |(_, r)| r.layout.as_str())
+        .exact("layout", |(_, r)| r.run.layout.as_str())
         .exact("subdomains", |(_, r)| r.run.subdomains)
         .exact("ranks", |(_, r)| r.run.ranks)
         .exact("threads", |(_, r)| r.run.threads);
@@ -140,6 +143,8 @@ pub fn csv(report: &BenchReport) -> Table {
         .exact("rounds", |(_, r)| converged(r))
         .exact("converged", |(_, r)| r.run.converged)
         .exact("converged_reason", |(_, r)| r.run.converged_reason.as_str())
+        .exact("options", |(_, r)| r.run.options.as_str())
+        .exact("given", |(_, r)| r.run.given.as_str())
         .exact("rescue", |(_, r)| r.run.rescue.as_deref())
         .exact("message", |(_, r)| r.run.message.as_deref())
         .table()
@@ -162,7 +167,7 @@ pub fn figure(report: &BenchReport) -> Figure {
             .unwrap_or(0);
         Colour::CYCLE[k % Colour::CYCLE.len()]
     };
-    let marker = |row: &BenchRow| match row.layout.as_str() {
+    let marker = |row: &BenchRow| match row.run.layout.as_str() {
         "ranks" | "subdomain" => Marker::Square,
         "body" | "packed" => Marker::Diamond,
         "core" if row.run.subdomains.is_some() => Marker::Triangle,

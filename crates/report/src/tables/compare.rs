@@ -1,6 +1,6 @@
 //! The comparison of methods as a table.
 
-use super::methods::{outcome, outer, ranks_and_threads};
+use super::methods::{options, outcome, outer, ranks_and_threads, LAYOUTS};
 use super::summary::ranks;
 use super::table::{count, fixed, scientific, Table};
 use crate::json::{CompareInequalities, CompareReport, CompareRow, CompareStep};
@@ -20,6 +20,7 @@ pub fn text(report: &CompareReport) -> String {
     let several = report.facts.contact.is_some_and(|c| c.solved > 1);
     let table = Table::of(&report.rows)
         .words("method", |r| &r.run.method)
+        .words("layout", |r| &r.run.layout)
         .numbers("parts", |r| count(r.run.subdomains))
         .numbers("ranks", |r| ranks_and_threads(&r.run))
         .numbers("κ", |r| fixed(r.run.kappa, 3))
@@ -45,8 +46,9 @@ pub fn text(report: &CompareReport) -> String {
         .table();
     let steps = load_steps(&report.rows);
     format!(
-        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n{steps}\
+        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n{steps}{}\n\
          All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
+         {LAYOUTS}\n\
          parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
          against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
          net: without what each rank holds before it has read the problem.\n{}{}",
@@ -55,6 +57,7 @@ pub fn text(report: &CompareReport) -> String {
         report.facts.subdomains,
         report.facts.dofs,
         report.cores,
+        options(report.rows.iter().map(|r| &r.run)),
         scientific(Some(report.facts.rtol)),
         match report.facts.reference_residual {
             Some(r) => format!(" (residual {})", scientific(Some(r))),
@@ -193,6 +196,7 @@ fn inequalities(c: &CompareInequalities) -> String {
 pub fn csv(rows: &[CompareRow]) -> Table {
     Table::of(rows)
         .exact("method", |r| r.run.method.as_str())
+        .exact("layout", |r| r.run.layout.as_str())
         .exact("subdomains", |r| r.run.subdomains)
         .exact("ranks", |r| r.run.ranks)
         .exact("threads", |r| r.run.threads)
@@ -219,6 +223,8 @@ pub fn csv(rows: &[CompareRow]) -> Table {
         .exact("rtol", |r| r.run.rtol)
         .exact("converged", |r| r.run.converged)
         .exact("converged_reason", |r| r.run.converged_reason.as_str())
+        .exact("options", |r| r.run.options.as_str())
+        .exact("given", |r| r.run.given.as_str())
         .exact("rescue", |r| r.run.rescue.as_deref())
         .exact("message", |r| r.run.message.as_deref())
         .table()

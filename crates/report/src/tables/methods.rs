@@ -3,6 +3,37 @@
 use super::table::count;
 use crate::json::{CompareContact, MethodRun};
 
+/// The words for layouts, for the text below a table.
+pub(super) const LAYOUTS: &str = "\
+layout: threads or ranks for ours; else a rank per subdomain, body or core (one part each: subdomains of a rank are \
+merged),\nor packed: a rank per core, whose MATIS keeps its subdomains apart (PETSc 3.21 and later);";
+
+/// The options of each method, a line each; layouts with the same options share one.
+pub(super) fn options<'a>(runs: impl Iterator<Item = &'a MethodRun>) -> String {
+    let mut lines: Vec<(&MethodRun, Vec<&str>)> = Vec::new();
+    for run in runs.filter(|run| !run.options.is_empty()) {
+        let alike = |known: &MethodRun| {
+            known.method == run.method && known.options == run.options && known.given == run.given
+        };
+        match lines.iter_mut().find(|(known, _)| alike(known)) {
+            Some((_, layouts)) => layouts.push(&run.layout),
+            None => lines.push((run, vec![&run.layout])),
+        }
+    }
+    let mut text = String::new();
+    for (run, layouts) in &lines {
+        text += &format!("  {} ({}): {}", run.method, layouts.join(", "), run.options);
+        text += &match run.given.as_str() {
+            "" => "\n".to_string(),
+            given => format!("  with {given}\n"),
+        };
+    }
+    match text.is_empty() {
+        true => text,
+        false => format!("options:\n{text}"),
+    }
+}
+
 /// Ranks, and threads where a rank has several.
 pub(super) fn ranks_and_threads(run: &MethodRun) -> String {
     match run.threads {

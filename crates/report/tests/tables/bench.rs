@@ -7,6 +7,8 @@ fn report() -> BenchReport {
     let row = |method: &str, layout: &str, seconds: &[f64]| BenchRow {
         run: MethodRun {
             method: method.into(),
+            layout: layout.into(),
+            options: format!("-pc_type {method}"),
             ranks: 2,
             threads: 1,
             error: Some(1e-8),
@@ -14,7 +16,6 @@ fn report() -> BenchReport {
             converged_reason: "CONVERGED_RTOL".into(),
             ..MethodRun::default()
         },
-        layout: layout.into(),
         samples: seconds
             .iter()
             .map(|&s| BenchSample {
@@ -67,8 +68,9 @@ fn the_table_has_medians_ranges_and_the_last_word() {
     let text = text(&report());
     let line = text.lines().find(|l| l.starts_with("gamg")).unwrap();
     let words: Vec<&str> = line.split_whitespace().collect();
-    assert_eq!(words[3..10].join(" "), "– 1.000 1.000 – 2.000 1.500 4.000");
-    assert_eq!(words[10], "4.00");
+    assert_eq!(words[4..11].join(" "), "– 1.000 1.000 – 2.000 1.500 4.000");
+    assert_eq!((words[1], words[11]), ("core", "4.00"));
+    assert!(text.contains("\n  gamg (core): -pc_type gamg\n"), "{text}");
     assert!(text.contains("mumps: round 1: out of memory"), "{text}");
     assert!(text.contains("fastest other: 2.000 s (gamg), 4.00 times as long"));
     assert!(text.contains("/lib/libblas.so"));
@@ -83,7 +85,7 @@ fn csv_and_picture_have_what_there_is() {
         .find(|l| l.starts_with("square,mumps"))
         .expect("a row");
     assert!(
-        line.ends_with("0,false,CONVERGED_RTOL,,round 1: out of memory"),
+        line.ends_with("0,false,CONVERGED_RTOL,-pc_type mumps,,,round 1: out of memory"),
         "{line}"
     );
     let columns = csv.lines().next().expect("a header").split(',').count();

@@ -8,6 +8,8 @@ fn compare_names_the_outcome() {
     let row = CompareRow {
         run: MethodRun {
             method: "hypre".into(),
+            layout: "core".into(),
+            options: "-ksp_type cg -pc_type hypre".into(),
             ranks: 2,
             threads: 1,
             kappa: Some(1.25),
@@ -46,15 +48,19 @@ fn compare_names_the_outcome() {
     let line = text.lines().find(|l| l.starts_with("hypre")).unwrap();
     assert_eq!(
         line.split_whitespace().collect::<Vec<_>>(),
-        "hypre – 2 1.250 8 0.500 0.250 0.750 100 50 1.2e-9 – CONVERGED_RTOL"
+        "hypre core – 2 1.250 8 0.500 0.250 0.750 100 50 1.2e-9 – CONVERGED_RTOL"
             .split(' ')
             .collect::<Vec<_>>()
     );
     assert!(text.contains("PETSc was built without hypre"));
+    // The two rows have the same options.
+    let said = "\noptions:\n  hypre (core, core): -ksp_type cg -pc_type hypre\n";
+    assert!(text.contains(said), "{text}");
     assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
     let csv = csv(&[failed]).to_csv();
     let end =
-        "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,,,,,,,,,false,CONVERGED_RTOL,,\
+        "hypre,core,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,,,,,,,,,false,CONVERGED_RTOL,\
+               -ksp_type cg -pc_type hypre,,,\
                PETSc was built without hypre\n";
     assert!(csv.ends_with(end), "{csv}");
 }

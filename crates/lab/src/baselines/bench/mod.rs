@@ -273,7 +273,6 @@ fn one_round(
 fn blank(case: &BenchInput) -> BenchCase {
     let rows = case.plan.runs.iter().map(|run| BenchRow {
         run: methods::blank(run),
-        layout: run.layout.into(),
         ..BenchRow::default()
     });
     BenchCase {

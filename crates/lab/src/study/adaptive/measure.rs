@@ -22,9 +22,14 @@ const TIGHTER: [f64; 4] = [1e-10, 1e-12, 1e-14, 1e-15];
 const ESTIMATED: f64 = 1e4;
 
 /// Options of PCBDDC besides the threshold. Adaptive constraints need deluxe scaling; an iteration that has not
-/// converged after this many steps will not converge.
-const ADAPTIVE: [&str; 4] = [
+/// converged after this many steps will not converge. Edges and motions are primal as well: here
+/// iterations count, not seconds.
+const ADAPTIVE: [&str; 8] = [
     "-bddc_pc_bddc_use_deluxe_scaling",
+    "true",
+    "-bddc_pc_bddc_use_nnsp",
+    "true",
+    "-bddc_pc_bddc_use_edges",
     "true",
     "-bddc_ksp_max_it",
     "500",
