@@ -26,7 +26,7 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         let first: Vec<Likeness> = (0..problem.local.len()).map(own).collect();
         let team = Team::new(1).expect("threads");
         let kinds = kinds(&problem, &jump, &first);
-        check(&choose(
+        let (forms, _) = choose(
             &kinds,
             &vec![None; kinds.len()],
             &team,
@@ -34,7 +34,8 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
             APPLICATIONS[0],
             memory,
             false,
-        ));
+        );
+        check(&forms);
     });
 }
 

@@ -9,6 +9,7 @@
 //! of each body alone.
 
 use super::cover;
+use super::nodes::Nodes;
 use base::linalg::csr::Csr;
 
 /// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
@@ -39,9 +40,22 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Vec<Vec<u32>> {
-    let mut work = Cutting::new(k, coordinates, None);
-    work.dissect(interior.to_vec());
-    work.out
+    let nodes = Nodes::new(k, interior);
+    if nodes.members.len() == interior.len() {
+        let mut work = Cutting::new(k, coordinates, None);
+        work.dissect(interior.to_vec());
+        return work.out;
+    }
+    let at = |dofs: &Vec<u32>| coordinates.map(|x| x[dofs[0] as usize]);
+    let at: Option<Vec<[f64; 3]>> = nodes.members.iter().map(at).collect();
+    let sizes: Vec<usize> = nodes.members.iter().map(Vec::len).collect();
+    let mut work = Cutting::new(&nodes.graph, at.as_deref(), Some(&sizes));
+    (work.leaf, work.both) = (LEAF, false);
+    work.dissect((0..sizes.len() as u32).collect());
+    let members = |node: &u32| nodes.members[*node as usize].iter().copied();
+    let sets = work.out.iter();
+    sets.map(|set| set.iter().flat_map(members).collect())
+        .collect()
 }
 
 /// The part of the nested dissection of these blocks that belongs to one of several ranks, which are (rank, number).
@@ -105,6 +119,10 @@ struct Cutting<'a> {
     distance: Vec<u32>,
     out: Vec<Vec<u32>>,
     next_part: u32,
+    /// Sets of at most this many dofs are not cut.
+    leaf: usize,
+    /// Whether sets are cut both ways.
+    both: bool,
 }
 
 impl<'a> Cutting<'a> {
@@ -121,6 +139,12 @@ impl<'a> Cutting<'a> {
             distance: vec![0; k.n()],
             out: Vec::new(),
             next_part: 0,
+            leaf: if sizes.is_some() {
+                LEAF_OF_BLOCKS
+            } else {
+                LEAF
+            },
+            both: sizes.is_some(),
         }
     }
 
@@ -137,15 +161,11 @@ impl<'a> Cutting<'a> {
 
     /// (lower, upper, separator) of a set; the set itself if it is to be one front.
     fn halves(&mut self, set: Vec<u32>) -> Result<Halves, Vec<u32>> {
-        let is_leaf = match self.sizes {
-            Some(_) => self.n_dofs(&set) <= LEAF_OF_BLOCKS,
-            None => set.len() <= LEAF,
-        };
-        if is_leaf {
+        if self.n_dofs(&set) <= self.leaf {
             return Err(set);
         }
         let by_coordinate = self.cut_by_coordinate(&set);
-        let by_distance = if self.sizes.is_none() && by_coordinate.is_some() {
+        let by_distance = if !self.both && by_coordinate.is_some() {
             None
         } else {
             self.cut_by_distance(&set)

@@ -13,14 +13,19 @@ pub const LANES: usize = 8;
 
 type Lane = [f64; LANES];
 
+// Iterators over pairs would be calls of functions where the compiler does not see them.
+#[inline(always)]
 fn subtract(y: &mut Lane, l: f64, x: &Lane) {
-    y.iter_mut()
-        .zip(x)
-        .for_each(|(y, x)| *y = (-l).mul_add(*x, *y));
+    for i in 0..LANES {
+        y[i] = (-l).mul_add(x[i], y[i]);
+    }
 }
 
+#[inline(always)]
 fn scale(y: &mut Lane, by: f64) {
-    y.iter_mut().for_each(|y| *y *= by);
+    for y in y {
+        *y *= by;
+    }
 }
 
 impl PartialCholesky {
@@ -75,8 +80,11 @@ impl PartialCholesky {
 }
 
 impl SweepValue for Lane {
+    #[inline(always)]
     fn add(&mut self, other: &Lane) {
-        self.iter_mut().zip(other).for_each(|(y, w)| *y += w);
+        for i in 0..LANES {
+            self[i] += other[i];
+        }
     }
 
     fn eliminate<const N: usize>(group: &[f64], work: &mut [Lane]) {
@@ -90,13 +98,22 @@ impl SweepValue for Lane {
                 subtract(&mut pivots[i], square[k * N + i], &x[k]);
             }
         }
-        let lots = below[..N * rest.len()].chunks(N * LOT);
-        for (l, rows) in lots.zip(rest.chunks_mut(LOT)) {
-            let r = rows.len();
-            for (i, y) in rows.iter_mut().enumerate() {
+        let whole = rest.len() / LOT * LOT;
+        let (lots, last) = below[..N * rest.len()].split_at(N * whole);
+        let (rows, few) = rest.split_at_mut(whole);
+        for (l, rows) in lots.chunks_exact(N * LOT).zip(rows.chunks_exact_mut(LOT)) {
+            for i in 0..LOT {
+                let mut y = rows[i];
                 for k in 0..N {
-                    subtract(y, l[k * r + i], &x[k]);
+                    subtract(&mut y, l[k * LOT + i], &x[k]);
                 }
+                rows[i] = y;
+            }
+        }
+        let r = few.len();
+        for (i, y) in few.iter_mut().enumerate() {
+            for k in 0..N {
+                subtract(y, last[k * r + i], &x[k]);
             }
         }
     }
@@ -106,13 +123,22 @@ impl SweepValue for Lane {
         let (pivots, rest) = work.split_at_mut(N);
         let mut x = [[0.0; LANES]; N];
         x.copy_from_slice(pivots);
-        let lots = below[..N * rest.len()].chunks(N * LOT);
-        for (l, rows) in lots.zip(rest.chunks(LOT)) {
-            let r = rows.len();
-            for (i, w) in rows.iter().enumerate() {
-                for k in 0..N {
-                    subtract(&mut x[k], l[k * r + i], w);
+        let whole = rest.len() / LOT * LOT;
+        let (lots, last) = below[..N * rest.len()].split_at(N * whole);
+        let (rows, few) = rest.split_at(whole);
+        for (l, rows) in lots.chunks_exact(N * LOT).zip(rows.chunks_exact(LOT)) {
+            // The sums of a column stay in registers for a lot.
+            for k in 0..N {
+                let (l, mut sum) = (&l[k * LOT..][..LOT], x[k]);
+                for i in 0..LOT {
+                    subtract(&mut sum, l[i], &rows[i]);
                 }
+                x[k] = sum;
+            }
+        }
+        for (i, w) in few.iter().enumerate() {
+            for k in 0..N {
+                subtract(&mut x[k], last[k * few.len() + i], w);
             }
         }
         for k in (0..N).rev() {

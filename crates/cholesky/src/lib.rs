@@ -8,7 +8,7 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | [`dissection`], [`cover`] | order of elimination: nested dissection with the smallest separators |
+//! | [`dissection`], [`cover`], `nodes` | order of elimination: nested dissection with the smallest separators |
 //! | [`symbolic`] | fronts, their rows, and where these stand in the parent's front |
 //! | [`multifrontal`] | factors front by front; what reaches the root is S |
 //! | `front` | factors one front, with or without pivots that vanish |
@@ -29,6 +29,7 @@ pub mod interior;
 pub mod lanes;
 pub mod multifrontal;
 mod narrow;
+mod nodes;
 mod null_vector;
 pub mod panel;
 pub mod shared;

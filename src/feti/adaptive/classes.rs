@@ -16,8 +16,8 @@ use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::substructures::{Problem, Subdomain};
 use parallel::exchange::{any, exchange};
 
-/// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
-/// or from jumps that the weights alone deal with.
+/// Stiffnesses along a class and beside it may differ by this factor. Smaller differences come from the mesh, or from
+/// jumps that the weights alone deal with.
 const SMOOTH: f64 = 1e2;
 
 /// Where ρ varies by no more than this, differences in the diagonal of K come from the mesh, however large: a corner of
@@ -85,7 +85,7 @@ pub fn rough(
 ) -> Vec<Vec<bool>> {
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, list) in classes.iter().enumerate() {
-        let stiff = diagonal(&problem.local[j]);
+        let stiff = stiffness(&problem.local[j]);
         for class in list {
             let dofs = class.at.iter().map(|&i| locals[j].gamma().interface[i]);
             if varies(&problem.local[j], &stiff, dofs) {
@@ -112,17 +112,19 @@ pub fn anywhere(comm: &SimpleCommunicator, problem: &Problem, locals: &[ScaledSu
         let shared = local.gamma().interface[..local.gamma().n_delta]
             .iter()
             .copied();
-        seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
+        seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &stiffness(sub), shared)
     });
     any(comm, found)
 }
 
-/// The diagonal of K.
-fn diagonal(sub: &Subdomain) -> Vec<f64> {
-    (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
+/// The diagonal of K for each entry of its row. A corner of one tetrahedron has a hundredth of the diagonal of a node
+/// inside, whatever the coefficients are; it also has a quarter of the neighbours.
+fn stiffness(sub: &Subdomain) -> Vec<f64> {
+    let of = |i| sub.k.get(i, i) / sub.k.row(i).0.len().max(1) as f64;
+    (0..sub.k.n()).map(of).collect()
 }
 
-/// Whether stiffness (the diagonal of K) and ρ vary along these dofs of a subdomain or next to them.
+/// Whether stiffness and ρ vary along these dofs of a subdomain or next to them.
 fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bool {
     let mut stiffness = (f64::INFINITY, 0.0f64);
     let mut rho = stiffness;

@@ -10,11 +10,14 @@
 //! exact. The seconds f, d, e per operation are measured (`fetifeti study kernels` measures them again). They are the
 //! same on every machine, so that runs can be repeated.
 
+use std::sync::Arc;
+
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
 use crate::feti::subdomain::equal::Likeness;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::{Problem, Subdomain};
+use cholesky::interior::{Analysed, Analysis};
 use cholesky::symbolic::Keep;
 use cholesky::symbolic::Symbolic;
 use parallel::team::Team;
@@ -53,6 +56,29 @@ pub struct Cost {
     pub implicit: [f64; 2],
     /// Bytes of S and T.
     pub dense_bytes: f64,
+}
+
+/// The cost of a kind and the analyses that it was counted with: of [I, Γ], and of K_rr and K_II.
+struct CountedKind {
+    cost: Cost,
+    dense: Symbolic,
+    sparse: [Symbolic; 2],
+}
+
+impl CountedKind {
+    /// The analysis that the factorisation in this form needs.
+    fn analysed(self, form: OperatorForm) -> Arc<Analysed> {
+        let analysed = Analysed::default();
+        let is_new = match form {
+            OperatorForm::Explicit => analysed
+                .dense
+                .set(Arc::new(Analysis::new(self.dense)))
+                .is_ok(),
+            OperatorForm::Implicit => analysed.sparse.set(self.sparse.map(Analysis::new)).is_ok(),
+        };
+        debug_assert!(is_new);
+        Arc::new(analysed)
+    }
 }
 
 impl Cost {
@@ -137,7 +163,8 @@ pub fn kinds<'a>(
 
 /// The form of each kind: the one asked for, or the cheaper one with `applications`. Dense operators take at most
 /// `memory` bytes where sparse solves are possible. They are preferred if S itself is needed (`wants_s`). Kinds with a
-/// form `so_far` keep it if memory suffices: nothing is counted for them.
+/// form `so_far` keep it if memory suffices: nothing is counted for them. What was counted with an analysis leaves that
+/// of its form.
 pub fn choose(
     kinds: &[SubdomainKind],
     so_far: &[Option<OperatorForm>],
@@ -146,15 +173,16 @@ pub fn choose(
     applications: f64,
     memory: f64,
     wants_s: bool,
-) -> Vec<OperatorForm> {
+) -> (Vec<OperatorForm>, Vec<Option<Arc<Analysed>>>) {
+    let all = |form| (vec![form; kinds.len()], vec![None; kinds.len()]);
     match asked {
-        Operators::Explicit => return vec![OperatorForm::Explicit; kinds.len()],
-        Operators::Implicit => return vec![OperatorForm::Implicit; kinds.len()],
+        Operators::Explicit => return all(OperatorForm::Explicit),
+        Operators::Implicit => return all(OperatorForm::Implicit),
         Operators::Auto => {}
     }
     let bytes: f64 = kinds.iter().map(dense_bytes).sum();
     if wants_s && bytes <= memory {
-        return vec![OperatorForm::Explicit; kinds.len()];
+        return all(OperatorForm::Explicit);
     }
     let dense = |k: &usize| so_far[*k] != Some(OperatorForm::Implicit);
     let least: f64 = (0..kinds.len())
@@ -162,10 +190,11 @@ pub fn choose(
         .map(|k| dense_bytes(&kinds[k]))
         .sum();
     let keep = least <= memory;
-    let costs = team.map(kinds.len(), |k| match so_far[k] {
+    let counted = team.map(kinds.len(), |k| match so_far[k] {
         Some(_) if keep => None,
-        _ => cost(&kinds[k], least > memory),
+        _ => count(&kinds[k], least > memory),
     });
+    let costs: Vec<Option<Cost>> = counted.iter().map(|c| c.as_ref().map(|c| c.cost)).collect();
     let form = |(k, c): (usize, &Option<Cost>)| match (so_far[k], c) {
         (Some(form), _) if keep => form,
         (_, Some(c)) if c.gain(applications) < 0.0 && !wants_s => OperatorForm::Implicit,
@@ -188,7 +217,11 @@ pub fn choose(
         forms[k] = OperatorForm::Implicit;
         used -= dense_bytes(&kinds[k]);
     }
-    forms
+    let chosen = counted.into_iter().zip(&forms);
+    let analysed = chosen
+        .map(|(c, &form)| c.map(|c| c.analysed(form)))
+        .collect();
+    (forms, analysed)
 }
 
 /// Entries of the factors behind sparse solves.
@@ -209,11 +242,11 @@ fn dense_bytes(kind: &SubdomainKind) -> f64 {
 
 /// The cost of a kind; `None` if dense operators are computed so fast that no analysis pays, unless memory is short
 /// (`always`).
-fn cost(kind: &SubdomainKind, always: bool) -> Option<Cost> {
+fn count(kind: &SubdomainKind, always: bool) -> Option<CountedKind> {
     let (k, x) = (&kind.sub.k, kind.sub.coordinates.as_deref());
     let interface = [kind.delta, kind.primal].concat();
     let (n_gamma, n_delta) = (interface.len() as f64, kind.delta.len() as f64);
-    // The set-up repeats the analysis of what it factors. This does not pay for small interfaces.
+    // Three analyses to choose one do not pay for small interfaces.
     if FLOP * SMALL * n_gamma.powi(3) < SHORT && !always {
         return None;
     }
@@ -223,12 +256,10 @@ fn cost(kind: &SubdomainKind, always: bool) -> Option<Cost> {
     if make < SHORT && !always {
         return None;
     }
-    let [held, interior] = kind.sparse();
-    let of_held = held.factor_entries(Keep::Interior) as f64;
-    let (flops, entries) = (
-        held.flops() + interior.flops(),
-        sparse_entries(&[held, interior]) as f64,
-    );
+    let sparse_factors = kind.sparse();
+    let of_held = sparse_factors[0].factor_entries(Keep::Interior) as f64;
+    let flops: f64 = sparse_factors.iter().map(Symbolic::flops).sum();
+    let entries = sparse_entries(&sparse_factors) as f64;
     let columns = (kind.primal.len() + 2 * kind.averages) as f64;
     let (dense, sparse) = match kind.copies {
         n if n < MANY => (DENSE, SPARSE),
@@ -236,10 +267,15 @@ fn cost(kind: &SubdomainKind, always: bool) -> Option<Cost> {
     };
     let copies = kind.copies as f64;
     let psi = columns * 2.0 * of_held * SPARSE_SHARED;
-    Some(Cost {
+    let cost = Cost {
         explicit: [make, copies * dense * (n_gamma.powi(2) + n_delta.powi(2))],
         implicit: [FLOP * flops + psi, copies * sparse * 2.0 * entries],
         dense_bytes: dense_bytes(kind),
+    };
+    Some(CountedKind {
+        cost,
+        dense: partial,
+        sparse: sparse_factors,
     })
 }
 

@@ -77,7 +77,7 @@ impl ProblemSizes {
         let preconditioner =
             choice::preconditioner(comm, problem, &sharing, &jump, CoarseFunctions::Vertices);
         let contact = jump.law.iter().any(|law| law.is_inequality());
-        let forms = forms::choose(
+        let (forms, _) = forms::choose(
             &kinds,
             &vec![None; kinds.len()],
             team,

@@ -52,7 +52,7 @@ pub(crate) fn factor(
         .iter()
         .map(|k| kept.get(k.j).and_then(|k| k.form))
         .collect();
-    let forms = forms::choose(
+    let (forms, counted) = forms::choose(
         &kinds,
         &forms_so_far,
         team,
@@ -69,7 +69,8 @@ pub(crate) fn factor(
     }
     let found = |j: usize| kept.get(j).and_then(|k| k.analysed.clone());
     let keeps = settings.keeps_analyses;
-    let analysed = analyses(&kinds, (&forms, &needed), (&found, keeps), team);
+    let there = |k: usize| found(kinds[k].j).or_else(|| counted[k].clone());
+    let analysed = analyses(&kinds, (&forms, &needed), (&there, keeps), team);
     let make = |k: usize, j: usize| {
         let (kind, sub) = (&kinds[k], &problem.local[j]);
         let condenser = Condenser {
@@ -140,10 +141,9 @@ pub(crate) fn factor(
     })
 }
 
-/// The analyses of each kind that has to be factored: those that are `found` already for its representative, one for
-/// all kinds with the same pattern and interface otherwise. Different coefficients and moved nodes change values only.
-/// A pattern of a single kind is analysed during its factorisation; its analysis is dropped then, unless it is to be
-/// kept (`keeps`).
+/// The analyses of each kind that has to be factored: those that are `found` already for it, one for all kinds with the
+/// same pattern and interface otherwise. Different coefficients and moved nodes change values only. A pattern of a
+/// single kind is analysed during its factorisation; its analysis is dropped then, unless it is to be kept (`keeps`).
 fn analyses(
     kinds: &[SubdomainKind],
     (forms, needed): (&[OperatorForm], &[bool]),
@@ -168,7 +168,7 @@ fn analyses(
     // Groups whose kinds would otherwise all analyse the pattern.
     let mut open = Vec::new();
     for group in &groups {
-        let mut of_group = group.iter().filter_map(|&k| found(kinds[k].j));
+        let mut of_group = group.iter().filter_map(|&k| found(k));
         let dense = |k: &&usize| forms[**k] == OperatorForm::Explicit;
         let shared = group.iter().filter(dense).count() > 1;
         let Some(analysed) = of_group

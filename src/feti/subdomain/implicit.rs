@@ -246,6 +246,30 @@ impl Implicit {
         })
     }
 
+    /// The entries of one of the operators in these rows and columns, by a solve for each column.
+    pub fn block(&self, which: Operator, at: &[usize]) -> Dense {
+        let n = match which {
+            Operator::S => self.interface.len(),
+            Operator::T => self.n_delta,
+        };
+        let unit = |&i: &usize| {
+            let mut e = vec![0.0; n];
+            e[i] = 1.0;
+            e
+        };
+        let mut out = Dense::zeros(at.len(), 0);
+        for some in at.chunks(LANES) {
+            let units: Vec<Vec<f64>> = some.iter().map(unit).collect();
+            let units: Vec<&[f64]> = units.iter().map(Vec::as_slice).collect();
+            for column in self.apply(which, &units) {
+                out.data.extend(at.iter().map(|&i| column[i]));
+            }
+        }
+        out.cols = at.len();
+        out.symmetrise();
+        out
+    }
+
     /// S as a dense matrix, if it has been asked for.
     pub fn known_s(&self) -> Option<&Dense> {
         self.whole[0].get().map(|s| &**s)

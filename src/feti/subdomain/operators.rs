@@ -30,6 +30,11 @@ impl LocalProblem {
         self.operators.entry(which, i, j)
     }
 
+    /// The entries of one of the operators in these rows and columns. Sparse solves make these columns alone.
+    pub fn block(&self, which: Operator, at: &[usize]) -> Dense {
+        self.operators.block(which, at)
+    }
+
     /// A diagonal entry of S. Where S is not available, it is that of K on Γ, an upper bound.
     pub(crate) fn s_diagonal(&self, i: usize) -> f64 {
         self.operators.s_diagonal(i).unwrap_or(self.stiff[i])

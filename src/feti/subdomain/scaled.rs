@@ -276,13 +276,12 @@ impl ScaledSubdomain {
     }
 
     fn block(&self, which: Operator, at: &[usize]) -> Dense {
-        let (n, factor) = (at.len(), self.multiple(which));
-        let mut out = Dense::zeros(n, n);
-        for (q, &j) in at.iter().enumerate() {
-            for (p, &i) in at.iter().enumerate() {
-                out.set(p, q, factor * self.entry(which, i, j));
-            }
-        }
+        let factor = self.multiple(which);
+        let mut out = match self.turned {
+            None => self.problem.block(which, at),
+            Some(_) => Dense::from_fn(at.len(), at.len(), |p, q| self.entry(which, at[p], at[q])),
+        };
+        scale(factor, &mut out.data);
         if self.turned.is_some() {
             out.symmetrise();
         }

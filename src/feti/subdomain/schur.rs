@@ -108,6 +108,14 @@ impl SchurOperators {
         }
     }
 
+    /// The entries of one of the operators in these rows and columns.
+    pub fn block(&self, which: Operator, at: &[usize]) -> Dense {
+        match self {
+            Sparse(solves) => solves.block(which, at),
+            _ => Dense::from_fn(at.len(), at.len(), |p, q| self.entry(which, at[p], at[q])),
+        }
+    }
+
     /// A diagonal entry of S; `None` where sparse solves have not made it.
     pub fn s_diagonal(&self, i: usize) -> Option<f64> {
         match self {
