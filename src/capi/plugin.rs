@@ -115,6 +115,11 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
     }
 }
 
+/// The jumps have to fall by this factor more where the residual of the host's equations has not been halved, for so
+/// many times in a row.
+const FURTHER: f64 = 0.1;
+const MOST_SLOW: i32 = 2;
+
 /// Number of search directions that a solve keeps for the next one with the same matrix.
 const DIRECTIONS: usize = 30;
 
@@ -231,7 +236,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         let (b, x) = (lent(b, solver.session())?, lent(x, solver.session())?);
         forward(solver, wishes)?;
         let (a, r) = (lent(a, solver.session())?, b.duplicate()?);
-        let best = Cell::new(f64::INFINITY);
+        let (before, slow) = (Cell::new(f64::INFINITY), Cell::new(0));
         let mut outcome = solver.solve(begun, &b, &x, &|x, look| {
             if wishes.goal < 0.0 {
                 // The host asked for the test of the jumps alone, which has not been made before the first iteration.
@@ -243,10 +248,13 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
             if look == JudgeTiming::Before {
                 return Ok((norm > wishes.goal).then_some(1.0));
             }
-            // A residual that is no longer halved has reached the rounding errors.
-            let hopeless = norm > 0.5 * best.replace(norm);
-            let done = norm <= wishes.goal || hopeless || !norm.is_finite();
-            Ok((!done).then_some(0.5 * wishes.goal.max(1e-4 * norm) / norm))
+            // It may lag behind the jumps, from which it follows: these then have to fall further. A residual that is
+            // still not halved by that has reached the rounding errors.
+            let halved = norm <= 0.5 * before.replace(norm);
+            slow.set(if halved { 0 } else { slow.get() + 1 });
+            let done = norm <= wishes.goal || slow.get() > MOST_SLOW || !norm.is_finite();
+            let factor = 0.5 * wishes.goal.max(1e-4 * norm) / norm;
+            Ok((!done).then_some(factor * FURTHER.powi(slow.get())))
         })?;
         let mut why = outcome.status.remedy().map(String::from);
         if outcome.status.converged() && wishes.goal >= 0.0 {

@@ -326,12 +326,13 @@ impl Embedded {
     pub(super) fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
         let mut load = vec![0.0; self.frame.ghosts.len()];
         self.halo.fetch(b, &mut load)?;
-        self.session.agree(self.shares.finite(&load))?;
         let mut given = vec![0.0; self.frame.ghosts.len()];
         if let Some(held) = held {
             self.halo.fetch(held, &mut given)?;
         }
-        let values = self.session.agree(self.shares.known(&load, &given))?;
+        let finite = self.shares.finite(&load);
+        let values = finite.and_then(|()| self.shares.known(&load, &given));
+        let values = self.session.agree(values)?;
         let loads = self.shares.loads(&load, &values);
         let mut gaps = vec![0.0; self.n_ties];
         let known = self.shares.by_dof(&values);

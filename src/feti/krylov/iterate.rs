@@ -141,6 +141,9 @@ impl KrylovRun {
     }
 }
 
+/// A run, and the displacements of its result if a judge has seen them.
+pub type JudgedRun = (KrylovRun, Option<Vec<Vec<f64>>>);
+
 /// Adds the Krylov method's correction to `lambda`. `residual` is Pᵀ r on entry. `look` may end the run early.
 /// Collective.
 pub fn iterate(

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use super::certificate::{Certificate, Kkt};
-use super::iterate::KrylovRun;
+use super::iterate::{JudgedRun, KrylovRun};
 use super::leftover::Leftover;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
@@ -55,13 +55,26 @@ impl LinearMethod {
     /// motions. Collective.
     pub(crate) fn recover(
         &self,
-        mut at: Iterate,
+        at: Iterate,
         run: KrylovRun,
+        solve_seconds: f64,
+    ) -> Result<LinearSolution> {
+        self.recovered(at, (run, None), solve_seconds)
+    }
+
+    /// [`recover`](Self::recover) with the displacements, if they are known already. Collective.
+    pub(super) fn recovered(
+        &self,
+        mut at: Iterate,
+        (run, seen): JudgedRun,
         solve_seconds: f64,
     ) -> Result<LinearSolution> {
         let clock = Instant::now();
         let dual = self.dual();
-        let u = displacements(&dual, &at.loads, &mut at.residual)?;
+        let u = match seen {
+            Some(u) => u,
+            None => displacements(&dual, &at.loads, &mut at.residual)?,
+        };
         let recover_seconds = clock.elapsed().as_secs_f64();
         let certificate =
             Certificate::new(&self.problem, &dual, &u, &at.lambda, self.length.get())?;

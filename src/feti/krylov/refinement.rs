@@ -81,6 +81,8 @@ impl LinearMethod {
     pub(super) fn relative_tolerance(&self, solution: &LinearSolution) -> Result<f64> {
         let (rtol, atol, _, _) = self.ksp.tolerances()?;
         Ok(match solution.residuals.first() {
+            // Beside a larger one it is the smaller tolerance all the more.
+            Some(&first) if atol <= rtol * first => rtol,
             Some(&first) if first > 0.0 => rtol.max(atol / first.max(self.least_residual())),
             _ => rtol,
         })

@@ -11,7 +11,7 @@
 
 use std::time::Instant;
 
-use super::iterate::{iterate, IterateMonitor as LookAt, IterationControl, KrylovRun};
+use super::iterate::{iterate, IterateMonitor as LookAt, IterationControl, JudgedRun, KrylovRun};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
@@ -83,11 +83,8 @@ impl LinearMethod {
             at.lambda.copy_from(&begun.lambda)?;
         }
         let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
-        let run = match self.at_once(&mut at, r, enough)? {
-            Some(run) => match begun {
-                Some(begun) => begun.run,
-                None => run,
-            },
+        let (run, u) = match self.at_once(&mut at, r, enough)? {
+            Some((run, u)) => (begun.map_or(run, |begun| begun.run), u),
             None => {
                 let target = Target::new(self, begun.as_ref().map_or(r, |b| b.reference))?;
                 let control = IterationControl::to(target.at_first(), at.residual.size).observed();
@@ -99,7 +96,7 @@ impl LinearMethod {
             }
         };
         let seconds = clock.elapsed().as_secs_f64();
-        let found = self.recover(at, run, seconds)?; /*                 u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)    */
+        let found = self.recovered(at, (run, u), seconds)?; /*          u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)    */
         let status = found.status.clone();
         let mut refined = self.refine(found)?; /*                       K du + Bᵀ dλ = f − K u − Bᵀ λ    */
         if enough.is_some() {
@@ -127,20 +124,21 @@ impl LinearMethod {
         at: &mut Iterate,
         r: f64,
         enough: Option<&Judge>,
-    ) -> Result<Option<KrylovRun>> {
+    ) -> Result<Option<JudgedRun>> {
         let Some(enough) = enough.filter(|_| r <= SUSPICIOUS * at.residual.size) else {
             return Ok(None);
         };
         at.place(&self.dual())?;
         let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
         if enough(&u, JudgeTiming::Before)?.is_none() {
-            return Ok(Some(KrylovRun {
+            let run = KrylovRun {
                 iterations: 0,
                 status: Status::NothingToDo,
                 residuals: vec![r],
                 estimate: None,
                 stopped: Stopped::No,
-            }));
+            };
+            return Ok(Some((run, Some(u))));
         }
         at.evaluate_projected(&self.dual())?;
         Ok(None)
@@ -201,7 +199,7 @@ impl LinearMethod {
         control: IterationControl,
         target: &Target,
         enough: Option<&Judge>,
-    ) -> Result<KrylovRun> {
+    ) -> Result<JudgedRun> {
         let IterationControl {
             mut tolerance,
             mut size,
@@ -214,16 +212,17 @@ impl LinearMethod {
             // at the start.
             size = size.max(at.residual.size);
             let wanted = target.of_displacements(at.residual.length(&self.dual()), size);
+            let judged = to_the_end(tolerance, wanted);
             if stalled || !run.status.converged() {
                 break;
             }
-            if to_the_end(tolerance, wanted) {
+            if judged {
                 let Some(enough) = enough.filter(|_| asked < ASKED) else {
                     break;
                 };
                 let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
                 let Some(factor) = enough(&u, JudgeTiming::After)? else {
-                    break;
+                    return Ok((run, Some(u)));
                 };
                 asked += 1;
                 // The last iteration may have ended far below its tolerance.
@@ -236,8 +235,9 @@ impl LinearMethod {
             let control = IterationControl::to(tolerance, size).observed();
             let more = iterate(self, &at.residual.r, &at.lambda, &control, None)?;
             if more.iterations == 0 {
-                // The target was reached already. The next pass is the last one, unless `enough` asks for more.
-                if std::mem::replace(&mut idle, true) {
+                // The target was reached already, by earlier directions perhaps, which `enough` has not seen. The next
+                // pass is the last one, unless `enough` asks for more.
+                if std::mem::replace(&mut idle, true) && !judged {
                     break;
                 }
                 continue;
@@ -246,7 +246,7 @@ impl LinearMethod {
             stalled = !more.status.converged();
             run.add(more);
         }
-        Ok(run)
+        Ok((run, None))
     }
 
     /// The certificate has the last word. Displacements far from equilibrium or from the solution, or rows far from
