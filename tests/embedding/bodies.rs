@@ -28,6 +28,12 @@ fn bodies_that_the_host_names() {
         ("-by none -fetifeti_bodies 4", 4.0),
     ] {
         let out = plex(&program, options);
+        // Debian's PETSc has PT-Scotch; that of scripts/newer_petsc.sh has not where indices have 64 bits.
+        let missing = "Unknown partitioning type ptscotch";
+        if plugin::petsc_version() > (3, 18) && out.all().contains(missing) {
+            println!("{missing}");
+            continue;
+        }
         assert_eq!(out.code, 0, "{options}: {}", out.all());
         assert_eq!(number_after(&out, "bodies: "), bodies, "{options}");
         let residual = number_after(&out, "residual ");
@@ -42,7 +48,7 @@ fn mistakes_are_sentences() {
     for (options, sentence) in [
         (
             "-by is -short_by 1",
-            "expected one for each of the 16 rows of the operator there",
+            "rows of the operator there", // how many depends on the version of PETSc
         ),
         (
             "-by label -without_label 1",

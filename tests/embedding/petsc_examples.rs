@@ -186,6 +186,50 @@ fn ex59_with_its_own_matis() {
     }
 }
 
+/// Symmetric loads leave CG few directions. After these only the rounding of the displacements is left, in the kernel
+/// of F: a tolerance below that is not pursued.
+#[test]
+fn symmetric_loads_of_time_steps_end_at_rounding() {
+    let scratch = Scratch::new("embed-ts-ex45");
+    let program = Program::tutorial_below("ts", &scratch, "ex45");
+    let heat =
+        "-sol_type trig_trig -dm_plex_simplex 0 -dm_plex_box_faces 4,4 -dm_refine 2 -petscpartitioner_type simple \
+         -temp_petscspace_degree 2 -ts_type beuler -ts_max_steps 3 -ts_dt 0.1 -dm_mat_type is";
+    for rtol in ["1e-9", "1e-12"] {
+        let options = format!("{heat} -ksp_type fetifeti -ksp_rtol {rtol} -ksp_converged_reason");
+        let out = program.with_plugin(4, &options);
+        assert_eq!(out.code, 0, "{rtol}: {}", out.all());
+        let solved: Vec<&str> = out
+            .stdout
+            .lines()
+            .filter(|line| line.contains("CONVERGED_RTOL"))
+            .collect();
+        assert!(solved.len() >= 3, "{rtol}: {}", out.all());
+        for line in solved {
+            let its: usize = line.rsplit(' ').next().unwrap().parse().expect("a number");
+            assert!(its <= 6, "{rtol}: {line}");
+        }
+    }
+}
+
+/// The velocities of a Stokes problem, with one load after the other: what directions of earlier loads reach without an
+/// iteration counts as progress.
+#[test]
+fn ex62_with_directions_of_earlier_loads() {
+    let scratch = Scratch::new("embed-ex62");
+    let program = Program::tutorial_below("snes", &scratch, "ex62");
+    let stokes = "-sol quadratic -dm_plex_simplex 0 -dm_plex_box_faces 4,4 -dm_refine 1 -petscpartitioner_type simple \
+         -vel_petscspace_degree 2 -pres_petscspace_degree 1 -petscds_jac_pre 0 -dm_mat_type is";
+    let outer = "-ksp_type fgmres -ksp_rtol 1e-10 -ksp_gmres_restart 100 -ksp_converged_reason -pc_type fieldsplit \
+         -pc_fieldsplit_type schur -pc_fieldsplit_schur_fact_type upper -pc_fieldsplit_schur_precondition a11 \
+         -fieldsplit_pressure_ksp_type preonly -fieldsplit_pressure_pc_type jacobi";
+    let inner = "-fieldsplit_velocity_ksp_type fetifeti -fieldsplit_velocity_ksp_rtol 1e-3";
+    let out = program.with_plugin(4, &format!("{stokes} {outer} {inner}"));
+    assert_eq!(out.code, 0, "{}", out.all());
+    assert!(out.stdout.contains("CONVERGED_RTOL"), "{}", out.all());
+    assert!(number_after(&out, "iterations") <= 60.0, "{}", out.all());
+}
+
 #[test]
 fn an_assembled_matrix_is_refused_in_one_sentence() {
     let scratch = Scratch::new("embed-ex2");

@@ -55,15 +55,17 @@ pub fn petsc_version() -> (u32, u32) {
     (next(), next())
 }
 
-/// The path of one of PETSc's ksp tutorials (Debian: libpetsc3.18-dev-examples).
-fn tutorial(name: &str) -> PathBuf {
-    let below = "share/petsc/examples/src/ksp/ksp/tutorials";
+/// The path of one of PETSc's tutorials below a folder such as `ksp/ksp` (Debian: libpetsc3.18-dev-examples).
+fn tutorial(of: &str, name: &str) -> PathBuf {
+    let below = format!("{of}/tutorials");
     let prefix = pkg_config(&["--variable=prefix"]).join(" ");
-    let own =
-        std::env::var("PETSC_DIR").map(|dir| PathBuf::from(dir).join("src/ksp/ksp/tutorials"));
+    let own = std::env::var("PETSC_DIR").map(|dir| PathBuf::from(dir).join("src"));
     let installed = [PathBuf::from(prefix), "/usr/share/petsc/3.18".into()];
-    let places = own.into_iter().chain(installed.map(|p| p.join(below)));
-    let found = places.map(|p| p.join(name)).find(|p| p.is_file());
+    let installed = installed.map(|p| p.join("share/petsc/examples/src"));
+    let places = own.into_iter().chain(installed);
+    let found = places
+        .map(|p| p.join(&below).join(name))
+        .find(|p| p.is_file());
     found.unwrap_or_else(|| panic!("PETSc's example {name} is not installed: run scripts/setup.sh"))
 }
 
@@ -73,7 +75,13 @@ pub struct Program(String);
 impl Program {
     /// One of PETSc's ksp tutorials.
     pub fn tutorial(scratch: &Scratch, name: &str) -> Program {
-        Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")), &[])
+        Program::tutorial_below("ksp/ksp", scratch, name)
+    }
+
+    /// One of the tutorials below a folder of PETSc's sources, such as `ts`.
+    pub fn tutorial_below(of: &str, scratch: &Scratch, name: &str) -> Program {
+        let source = tutorial(of, &format!("{name}.c"));
+        Program::compile("mpicc", scratch, &source, &[])
     }
 
     /// One of PETSc's ksp tutorials with another build of PETSc: a directory below Debian's /usr/lib/petscdir, with `*`

@@ -19,6 +19,11 @@ const LOOK: f64 = 0.3;
 /// jumps come from: rounding over the smallest eigenvalue that a factor may have to count as exact.
 const OUTSIDE: f64 = 1e-8;
 
+/// No run goes on below this fraction of the displacements that r is computed from: what is left there is their own
+/// rounding. Part of it is in the kernel of F, where averages are primal. It does not fall, and where symmetry leaves
+/// few directions to go it is soon all that is left: CG would divide by it.
+const NOISE: f64 = 10.0 * f64::EPSILON;
+
 /// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
 pub type IterateMonitor<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;
 
@@ -196,7 +201,7 @@ pub fn iterate(
     let x = system.dual().multipliers()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     ksp.record_residuals(max_it.clamp(0, 100_000) as usize + 1)?;
-    rtol_of(control.tolerance / start)?;
+    rtol_of(control.tolerance.max(NOISE * control.size) / start)?;
     let counted = ClockReadings::now();
     let solved = {
         let _running = system.run(control.observed.then_some(lambda), is_cg);

@@ -225,6 +225,8 @@ impl LinearMethod {
                     return Ok((run, Some(u)));
                 };
                 asked += 1;
+                // Directions of earlier loads may reach the new tolerance without an iteration: that is progress.
+                idle = false;
                 // The last iteration may have ended far below its tolerance.
                 tolerance = factor * tolerance.min(at.evaluate_projected(&self.dual())?);
             } else {
