@@ -4,16 +4,15 @@
 #
 #   scripts/embedding_table.sh LIBRARY      LIBRARY is the full path of libfetifeti.so
 set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/petsc_examples.sh
 
 library=${1:?"expected the full path of libfetifeti.so"}
-petsc=$(pkg-config --variable=prefix PETSc)
-sources=/usr/share/petsc/3.18/share/petsc/examples/src/ksp/ksp/tutorials
-[ -d "$sources" ] || sources=$petsc/share/petsc/examples/src/ksp/ksp/tutorials
+sources=$(example_sources)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-read -ra flags <<<"$(pkg-config --cflags --libs PETSc)"
 for example in ex71 ex49 ex59; do
-    mpicc -O1 -o "$work/$example" "$sources/$example.c" "${flags[@]}" -llapack -lblas -lm
+    build_example "$sources/ksp/ksp/tutorials/$example.c" "$work/$example"
 done
 
 # iterations / condition number of a run: run RANKS PREFIX PROGRAM ARGUMENTS...

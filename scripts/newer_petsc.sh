@@ -5,8 +5,9 @@
 # the newest that belongs to it. Left are FOLDER/petsc-VERSION and FOLDER/slepc-VERSION and a file to be sourced,
 # FOLDER/env. What is already built stays. INDICES=64 in the environment: 64-bit indices, beside the others, with
 # FOLDER/env-64. With PETSc 3.23 and later come Fortran's modules, and petsc4py where indices have 32 bits.
-# MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; PT-Scotch is left out with 64-bit indices, which
-# Debian's has not, and MUMPS takes them as long as they fit into 32. Debian's hypre is too old for PETSc 3.22.
+# MUMPS, ScaLAPACK, PT-Scotch and SuiteSparse are Debian's, as in Debian's PETSc; PT-Scotch is left out with 64-bit
+# indices, which Debian's has not, and MUMPS takes them as long as they fit into 32. Debian's hypre is too old for PETSc
+# 3.22, and HPDDM is no package of Debian's.
 set -euo pipefail
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
@@ -58,6 +59,13 @@ if [ "$bits" = 64 ]; then
 else
     options=(--with-ptscotch-include=/usr/include/scotch
         "--with-ptscotch-lib=[-lptesmumps,-lptscotch,-lptscotcherr,-lscotch,-lscotcherr]")
+fi
+# CHOLMOD is the fastest solver of subdomains that PCBDDC has here.
+if [ -e /usr/include/suitesparse/cholmod.h ]; then
+    options+=(--with-suitesparse-include=/usr/include/suitesparse
+        "--with-suitesparse-lib=[-lspqr,-lumfpack,-lklu,-lcholmod,-lamd]")
+else
+    echo "SuiteSparse is left out: /usr/include/suitesparse/cholmod.h is missing (Debian: libsuitesparse-dev)."
 fi
 # The bindings of Fortran are made by PETSc's own script from 3.23 on; before that by a program that is not here.
 minor=${petsc#*.} minor=${minor%%.*}
