@@ -23,6 +23,7 @@ mod numbering;
 mod object;
 mod plugin;
 mod plugin_together;
+mod plugin_view;
 mod results;
 mod rows;
 mod set_up;

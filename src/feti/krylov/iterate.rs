@@ -22,7 +22,7 @@ const OUTSIDE: f64 = 1e-8;
 /// No run goes on below this fraction of the displacements that r is computed from: what is left there is their own
 /// rounding. Part of it is in the kernel of F, where averages are primal. It does not fall, and where symmetry leaves
 /// few directions to go it is soon all that is left: CG would divide by it.
-const NOISE: f64 = 10.0 * f64::EPSILON;
+pub(super) const NOISE: f64 = 10.0 * f64::EPSILON;
 
 /// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
 pub type IterateMonitor<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;

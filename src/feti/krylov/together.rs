@@ -5,7 +5,7 @@
 //! What comes before an iteration and after it, the projection of the load, the displacements and their certificate, is
 //! [`LinearMethod::solve_begun`]'s, one load after the other.
 
-use super::iterate::KrylovRun;
+use super::iterate::{KrylovRun, NOISE};
 use super::loads::Loads;
 use super::residual::{Iterate, ROUNDING};
 use super::tally::ClockReadings;
@@ -108,6 +108,7 @@ impl LinearMethod {
         self.system.recycled_part(&residual.r, &lambda)?;
         let norm = residual.r.norm2()?;
         let nothing = norm <= tolerance.max(ROUNDING * residual.size);
+        let tolerance = tolerance.max(NOISE * residual.size);
         let vector = || dual.multipliers();
         Ok(Column {
             load,
