@@ -83,7 +83,6 @@ const FUNCTIONS: &[&str] = &[
     "VecNorm",
     "VecDuplicate",
     "VecPointwiseMult",
-    "VecPointwiseDivide",
     "VecReciprocal",
     "VecAbs",
     "VecView",

@@ -238,10 +238,17 @@ impl Vec {
         petsc!(VecPointwiseMult(w, x, y))
     }
 
-    /// self_i ← x_i / y_i.
+    /// self_i ← x_i / y_i, and 0 where y_i = 0. What 0 / 0 is in VecPointwiseDivide depends on the version of PETSc.
     pub fn pointwise_divide(&self, x: &Vec, y: &Vec) -> Result<()> {
-        let (x, y, w) = (x.read()?, y.read()?, self.write()?);
-        petsc!(VecPointwiseDivide(w, x, y))
+        let quotients: std::vec::Vec<f64> = {
+            let (x, y) = (x.array()?, y.array()?);
+            let pairs = x.iter().zip(y.iter());
+            pairs
+                .map(|(x, y)| if *y == 0.0 { 0.0 } else { x / y })
+                .collect()
+        };
+        self.array_mut()?.copy_from_slice(&quotients);
+        Ok(())
     }
 
     /// self ← pseudo-random entries in (0, 1), the same in every run with the same number of ranks.
