@@ -45,7 +45,7 @@ SCALED = "-pc_is_use_stiffness_scaling"
 BASIS = "-pc_bddc_use_change_of_basis"
 PRIMAL = {
     "scalar": ["", "-pc_bddc_use_faces"],
-    "elastic": ["-corners", "-corners -pc_bddc_use_faces", "-corners -pc_bddc_use_faces -pc_bddc_use_edges 0", BASIS],
+    "elastic": [BASIS, "-corners -pc_bddc_use_faces -pc_bddc_use_edges 0", "-corners", "-corners -pc_bddc_use_faces"],
 }
 DELUXE = "-pc_bddc_use_deluxe_scaling"
 
@@ -119,7 +119,7 @@ class Runs:
             yield f"{base} {SCALED} {PRIMAL[kind][1]} {local('mumps', 'cholesky')}"
             yield f"{base} {DELUXE} {PRIMAL[kind][1]} {solver}"
         if kind == "elastic":
-            yield f"{base} {SCALED} {PRIMAL[kind][1]} {solver} -motions 0"
+            yield f"{base} {SCALED} {PRIMAL[kind][-1]} {solver} -motions 0"
 
     def others(self, case):
         """The multigrid methods on the assembled matrix."""
@@ -140,7 +140,7 @@ def best_bddc(runs, case):
         result = runs.run(case, choice, limit)
         results.append((result, choice))
         if runs.good(result):
-            limit = min(limit, 60 + 10 * result["total"])
+            limit = min(limit, 10 + 3 * result["total"])
         seconds = f"{result['total']:.2f} s, {result['iterations']:.0f}" if runs.good(result) else result["reason"]
         print(f"    {seconds}: {choice}", file=sys.stderr)
     right = [(result["total"], choice) for result, choice in results if runs.good(result)]
