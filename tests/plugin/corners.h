@@ -1,4 +1,4 @@
-/* What PCBDDC wants to know of the nodes: where they are, and which hold two parts to each other. */
+/* What solvers may want to know of the nodes: where they are, and which hold two parts to each other. */
 #include "parts.h"
 
 /* The position of every unknown of this rank: PCBDDC picks vertices by them. */
@@ -55,15 +55,14 @@ static int Farthest(const Mesh *mesh, const Shared *list, int n, int a, int b)
   return best;
 }
 
-/* Gives PCBDDC the nodes that hold two parts to each other: of those that two parts share alone three that are far
-   apart. PCBDDC does so itself (-pc_bddc_corner_selection) where each rank has one subdomain. */
-static PetscErrorCode Corners(const Problem *p, PC pc)
+/* The unknowns that hold two parts to each other: at nodes that two parts share alone, three that are far apart. PCBDDC
+   finds them itself (-pc_bddc_corner_selection) where each rank has one subdomain. */
+static PetscErrorCode Corners(const Problem *p, IS *corners)
 {
   const Mesh *mesh = &p->mesh;
   int        *first, *second, *more, v, i, j, n = 0;
   Shared     *shared;
   PetscInt   *dofs, bs = p->components, c, count = 0;
-  IS          corners;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc5(mesh->nodes, &first, mesh->nodes, &second, mesh->nodes, &more, mesh->nodes, &shared,
@@ -98,9 +97,7 @@ static PetscErrorCode Corners(const Problem *p, PC pc)
       for (c = 0; c < bs; c++) dofs[count++] = p->number[pick[v]] * bs + c;
   }
   PetscCall(PetscSortRemoveDupsInt(&count, dofs));
-  PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, count, dofs, PETSC_COPY_VALUES, &corners));
-  PetscCall(PCBDDCSetPrimalVerticesIS(pc, corners));
-  PetscCall(ISDestroy(&corners));
+  PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, count, dofs, PETSC_COPY_VALUES, corners));
   PetscCall(PetscFree5(first, second, more, shared, dofs));
   PetscFunctionReturn(0);
 }

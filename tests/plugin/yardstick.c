@@ -7,7 +7,7 @@
      aij      the assembled matrix
      capi     the C API of this library, for which any PETSc will do
 
-   -motions 0 leaves the near-null space out, -corners gives PCBDDC vertices that hold the subdomains, -columns N solves
+   -motions 0 leaves the near-null space out, -corners names vertices that hold the subdomains, -columns N solves
    for N more right-hand sides, by KSPMatSolve() and one after the other.
 
    Everything else is said by the options of KSP and PC. scripts/yardstick.py makes tables of it.
@@ -205,6 +205,7 @@ int main(int argc, char **argv)
   Vec                b, u, r;
   KSP                ksp;
   PC                 pc;
+  IS                 primal;
   FetiFeti           ff;
   MatNullSpace       space;
   KSPConvergedReason reason;
@@ -252,7 +253,12 @@ int main(int argc, char **argv)
     PetscCall(KSPGetPC(ksp, &pc));
     PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBDDC, &bddc));
     if (bddc && p.components > 1) PetscCall(Positions(&p, b, pc));
-    if (bddc && corners) PetscCall(Corners(&p, pc));
+    if (corners) {
+      PetscCall(Corners(&p, &primal));
+      if (bddc) PetscCall(PCBDDCSetPrimalVerticesIS(pc, primal));
+      else PetscCall(KSPFETIFETISetPrimalDofs(ksp, primal));
+      PetscCall(ISDestroy(&primal));
+    }
     PetscCall(Now(&begin, &before));
     PetscCall(KSPSetUp(ksp));
     PetscCall(KSPSetUpOnBlocks(ksp));
