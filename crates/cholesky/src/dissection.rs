@@ -12,6 +12,9 @@ use super::cover;
 use super::nodes::Nodes;
 use base::linalg::csr::Csr;
 
+/// Fewer dofs than this are ordered one by one: to find their nodes costs as much as it saves.
+const FEW: usize = 1000;
+
 /// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
 /// outweighs the fill that cutting further would save.
 const LEAF: usize = 12;
@@ -40,11 +43,17 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Vec<Vec<u32>> {
-    let nodes = Nodes::new(k, interior);
-    if nodes.members.len() == interior.len() {
+    let of_dofs = || {
         let mut work = Cutting::new(k, coordinates, None);
         work.dissect(interior.to_vec());
-        return work.out;
+        work.out
+    };
+    if interior.len() < FEW {
+        return of_dofs();
+    }
+    let nodes = Nodes::new(k, interior);
+    if nodes.members.len() == interior.len() {
+        return of_dofs();
     }
     let at = |dofs: &Vec<u32>| coordinates.map(|x| x[dofs[0] as usize]);
     let at: Option<Vec<[f64; 3]>> = nodes.members.iter().map(at).collect();

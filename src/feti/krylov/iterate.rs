@@ -19,9 +19,10 @@ const LOOK: f64 = 0.3;
 /// jumps come from: rounding over the smallest eigenvalue that a factor may have to count as exact.
 const OUTSIDE: f64 = 1e-8;
 
-/// No run goes on below this fraction of the displacements that r is computed from: what is left there is their own
-/// rounding. Part of it is in the kernel of F, where averages are primal. It does not fall, and where symmetry leaves
-/// few directions to go it is soon all that is left: CG would divide by it.
+/// No run for a linear solution goes on below this fraction of the displacements that r is computed from: what is left
+/// there is their own rounding. Part of it is in the kernel of F, where averages are primal. It does not fall, and
+/// where symmetry leaves few directions to go it is soon all that is left: CG would divide by it. In a contact loop a
+/// body that hardly anything holds may be far away for a while; that says nothing of the jumps that matter.
 pub(super) const NOISE: f64 = 10.0 * f64::EPSILON;
 
 /// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
@@ -38,6 +39,8 @@ pub struct IterationControl {
     pub watch: Option<Watch>,
     /// Whether monitors may ask for the displacements of the iterate.
     pub observed: bool,
+    /// The run ends here at the latest; 0 without such a limit.
+    pub floor: f64,
 }
 
 impl IterationControl {
@@ -48,6 +51,15 @@ impl IterationControl {
             size,
             watch: None,
             observed: false,
+            floor: 0.0,
+        }
+    }
+
+    /// This run without iterations below the rounding of the displacements.
+    pub fn above_rounding(self) -> IterationControl {
+        IterationControl {
+            floor: NOISE * self.size,
+            ..self
         }
     }
 
@@ -201,7 +213,7 @@ pub fn iterate(
     let x = system.dual().multipliers()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     ksp.record_residuals(max_it.clamp(0, 100_000) as usize + 1)?;
-    rtol_of(control.tolerance.max(NOISE * control.size) / start)?;
+    rtol_of(control.tolerance.max(control.floor) / start)?;
     let counted = ClockReadings::now();
     let solved = {
         let _running = system.run(control.observed.then_some(lambda), is_cg);

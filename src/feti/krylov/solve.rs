@@ -87,7 +87,8 @@ impl LinearMethod {
             Some((run, u)) => (begun.map_or(run, |begun| begun.run), u),
             None => {
                 let target = Target::new(self, begun.as_ref().map_or(r, |b| b.reference))?;
-                let control = IterationControl::to(target.at_first(), at.residual.size).observed();
+                let control = IterationControl::to(target.at_first(), at.residual.size);
+                let control = control.observed().above_rounding();
                 let run = match begun {
                     Some(begun) => begun.run,
                     None => self.reach(&mut at, control, None)?, /*   Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
@@ -234,7 +235,9 @@ impl LinearMethod {
             }
             // The remaining iterations are few, and no look at the spectrum may end them.
             self.dual().p_transpose(&at.residual.r)?;
-            let control = IterationControl::to(tolerance, size).observed();
+            let control = IterationControl::to(tolerance, size)
+                .observed()
+                .above_rounding();
             let more = iterate(self, &at.residual.r, &at.lambda, &control, None)?;
             if more.iterations == 0 {
                 // The target was reached already, by earlier directions perhaps, which `enough` has not seen. The next
