@@ -12,7 +12,8 @@ use super::cover;
 use super::nodes::Nodes;
 use base::linalg::csr::Csr;
 
-/// Fewer dofs than this are ordered one by one: to find their nodes costs as much as it saves.
+/// Fewer dofs than this are ordered one by one: their analysis is short, and another order would change the last digits
+/// of their factors.
 const FEW: usize = 1000;
 
 /// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
