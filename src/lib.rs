@@ -160,6 +160,7 @@ pub mod inside {
     pub use crate::feti::subdomain::problem::{factorisations, LocalProblem};
     pub use crate::feti::subdomain::{equal, scaled::ScaledSubdomain, turn, which};
     pub use crate::feti::LinearMethod;
+    pub use crate::solver::groups;
     pub use crate::substructures::idle;
 
     /// Handles and errors of C interfaces.

@@ -2,8 +2,8 @@
 
 pub use crate::contact::{ContactSettings, ContactType, FrictionTuning, Tuning};
 pub use crate::feti::settings::{
-    Adaptive, Averages, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal,
-    ProjectorKind, Scaling,
+    Adaptive, Averages, CoarseFunctions, MergeKind, MethodSettings, Operators, PcType, Precision,
+    Primal, ProjectorKind, Scaling,
 };
 use crate::Result;
 use petsc::{Options, Session};
@@ -81,6 +81,7 @@ setters!(ContactSettings: kind: ContactType, max_it: usize, inner_rtol: f64, fac
 
 setters!(MethodSettings:
     gamma: f64, precision: Precision, operators: Operators, primal: Primal, projector: ProjectorKind,
+    merge: MergeKind,
     adaptive: Adaptive, adaptive_max: usize, recycle: usize, coupled: usize, keeps_analyses: bool, check: bool,
     certify: bool, stops_early: bool, spectrum: bool, rtol: f64, prefix: String;
     optional

@@ -1,6 +1,10 @@
 //! The main entry: from substructures to a solver that returns solutions and spectra.
 
+mod changes;
 mod early;
+mod merging;
+
+pub use merging::groups;
 
 use std::cell::Ref;
 
@@ -10,12 +14,11 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::solve::Judge;
 use crate::feti::krylov::together::Begun;
 use crate::feti::operators::dual::Dual;
-use crate::feti::{
-    Communication, FreeMotion, LinearMethod, LinearSolution, Numbers, SetUpSummary, Spectrum,
-};
+use crate::feti::{Communication, LinearMethod, LinearSolution, SetUpSummary, Spectrum};
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::substructures::{idle, FrictionNode, Problem, Row, SolvedRow};
+use crate::substructures::merged::Merged;
+use crate::substructures::{idle, Problem, SolvedRow};
 use crate::Result;
 use parallel::exchange::any;
 use petsc::{cite, Ksp, LogStage, Session};
@@ -72,6 +75,8 @@ pub struct FetiFeti {
     solve_stage: LogStage,
     /// Whether a body has motions that nothing sees.
     idle: bool,
+    /// The bodies that are one for the method.
+    merged: Option<Merged>,
 }
 
 impl FetiFeti {
@@ -94,10 +99,12 @@ impl FetiFeti {
         let stage = LogStage::register(session, "FETI-FETI setup")?;
         let staged = stage.scope()?;
         let settings = settings.into().with_options(session)?;
+        let (problem, merged) = merging::merged(session, problem, &settings.method);
         let method = LinearMethod::new(session, problem, settings.method.clone())?;
         drop(staged);
         let idle = method.problem.local.iter().any(|s| !s.idle.is_empty());
         Ok(FetiFeti {
+            merged,
             idle: any(session.comm(), idle),
             method,
             settings,
@@ -186,7 +193,7 @@ impl FetiFeti {
         } else {
             None
         };
-        let mut solution = self.solution(found, steps);
+        let mut solution = self.solution(found, steps)?;
         solution.certified = certified;
         Ok(solution)
     }
@@ -201,7 +208,7 @@ impl FetiFeti {
     }
 
     /// The solution, with the rows in the order in which the problem has them. Collective.
-    fn solution(&self, mut found: LinearSolution, steps: Vec<Step>) -> Solution {
+    fn solution(&self, mut found: LinearSolution, steps: Vec<Step>) -> Result<Solution> {
         if self.idle {
             let comm = self.session().comm();
             idle::remove_idle(comm, &self.problem().local, &mut found.u);
@@ -215,10 +222,16 @@ impl FetiFeti {
         let gaps = jump.in_given_order(&gaps);
         let holds = jump.in_given_order(&found.active);
         let values = multipliers.into_iter().zip(gaps).zip(holds);
-        let rows = self.problem().rows.iter().zip(values);
+        let rows = self.method.problem.rows.iter().zip(values);
         let rows = rows
             .map(|(row, ((multiplier, gap), holds))| SolvedRow::new(row, multiplier, gap, holds));
-        Solution::new(found, rows.collect(), steps)
+        let mut rows: Vec<SolvedRow> = rows.collect();
+        drop(dual);
+        if let Some(merged) = &self.merged {
+            let forces = self.method.interface_forces(&found.lambda)?;
+            rows = merged.rows(self.session().comm(), &forces, rows);
+        }
+        Ok(Solution::new(found, rows, steps))
     }
 
     /// Displacements of each local subdomain for the present iterate, for a monitor of [`FetiFeti::ksp`] during a solve
@@ -228,84 +241,6 @@ impl FetiFeti {
     /// PETSc's own.
     pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
         self.method.current()
-    }
-
-    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows, which are in the
-    /// order in which this rank provides them. Nothing is factored again.
-    ///
-    /// # Panics
-    /// If a length differs from the present one.
-    pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
-        self.method.set_loads(loads, gaps);
-    }
-
-    /// Replaces the rows between bodies that this rank provides, and the nodes with friction among them. Subdomains
-    /// whose interface stays the same stay factored; jump operator, coarse problems and preconditioner are set up anew.
-    /// Collective.
-    ///
-    /// # Errors
-    /// As [`FetiFeti::new`]; the solver then still has the old rows and works with them.
-    pub fn set_rows(&mut self, rows: Vec<Row>, friction: Vec<FrictionNode>) -> Result<()> {
-        let _staged = self.setup_stage.scope()?;
-        self.method.set_rows(rows, friction)
-    }
-
-    /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies,
-    /// and nodes with friction among them, if there are some. Patterns are not analysed again if
-    /// [`MethodSettings::keeps_analyses`](crate::settings::MethodSettings::keeps_analyses) was set. `None` if a
-    /// subdomain has motions without energy that it did not have: a new solver is to be made, with primal dofs for
-    /// them. Collective.
-    ///
-    /// # Errors
-    /// As [`FetiFeti::new`].
-    ///
-    /// # Panics
-    /// If a length differs from the present one.
-    pub fn renewed(
-        self,
-        numbers: Vec<Numbers>,
-        rows: Option<(Vec<Row>, Vec<FrictionNode>)>,
-    ) -> Result<Option<FetiFeti>> {
-        let FetiFeti {
-            method,
-            settings,
-            setup_stage,
-            solve_stage,
-            idle,
-        } = self;
-        let staged = setup_stage.scope()?;
-        let renewed = method.renewed(numbers, rows)?;
-        drop(staged);
-        Ok(renewed.map(|method| FetiFeti {
-            method,
-            settings,
-            setup_stage,
-            solve_stage,
-            idle,
-        }))
-    }
-
-    /// The start of the contact loop with the multipliers inside bodies of an earlier solution, and a multiplier and a
-    /// state for each row that this rank provides.
-    pub fn start(&self, inside: &[f64], rows: &[(f64, bool)]) -> contact::State {
-        let dual = self.dual();
-        let jump = &dual.stiffness.jump;
-        let between = jump.rows_between_bodies();
-        let mut lambda = inside.to_vec();
-        lambda.resize(between.start, 0.0);
-        let mut active = vec![true; between.start];
-        for i in between {
-            let (multiplier, holds) = rows[jump.given(i)];
-            let holds = if jump.law[i].is_decided() {
-                holds
-            } else {
-                jump.initial[i]
-            };
-            lambda.push(multiplier);
-            active.push(holds);
-        }
-        jump.release(&active, &mut lambda);
-        contact::State::warm(lambda, &active)
     }
 
     /// Finds the eigenvectors above τ with all candidate rows and deflates them from now on, whatever the spectrum of
@@ -353,14 +288,6 @@ impl FetiFeti {
         self.method.check()
     }
 
-    /// The motions of bodies that the rows which hold leave free: after a solve those that no load drives. The place of
-    /// the bodies along them is arbitrary, and a solution has the one nearest to the start. Collective.
-    pub fn free_motions(&self) -> Vec<FreeMotion> {
-        let dual = self.dual();
-        dual.natural
-            .free_motions(dual.comm(), self.problem(), &dual.stiffness)
-    }
-
     /// Messages and reductions per iteration, over all iterations of the Krylov method so far; `None` if there were
     /// none. Collective.
     pub fn communication(&self) -> Option<Communication> {
@@ -375,11 +302,6 @@ impl FetiFeti {
     /// The settings in force, with options applied.
     pub fn settings(&self) -> &Settings {
         &self.settings
-    }
-
-    /// The problem.
-    pub fn problem(&self) -> &Problem {
-        &self.method.problem
     }
 
     /// The session.

@@ -121,6 +121,19 @@ pub enum ProjectorKind {
     Auto,
 }
 
+/// Whether bodies that are tied for good, by whole faces whose nodes match, are one for the method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MergeKind {
+    /// They stay bodies; the ties are rows between them, as in \[Lee\].
+    None,
+    /// They are one body of the method: FETI-DP holds them together. They keep their names and forces.
+    Ties,
+    /// [`Ties`](Self::Ties) for meshes in space ([`Problem::ragged`](crate::Problem::ragged)); boxes stay bodies.
+    Auto,
+}
+
+named!(MergeKind { None = "none", Ties = "ties", Auto = "auto" });
 named!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
 named!(CoarseFunctions { All = "all", Vertices = "vertices" });
 named!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
@@ -175,6 +188,8 @@ pub struct MethodSettings {
     pub averages: Option<Averages>,
     /// `fetifeti_projector`.
     pub projector: ProjectorKind,
+    /// `fetifeti_merge`.
+    pub merge: MergeKind,
     /// `fetifeti_adaptive`.
     pub adaptive: Adaptive,
     /// `fetifeti_adaptive_max`: largest number of vectors per body.
@@ -216,6 +231,7 @@ impl Default for MethodSettings {
             operators: Operators::Auto,
             memory: None,
             projector: ProjectorKind::Auto,
+            merge: MergeKind::Auto,
             adaptive: Adaptive::Auto,
             adaptive_max: 100,
             recycle: 0,
@@ -271,6 +287,8 @@ impl MethodSettings {
         })?;
         let help = "what edges and faces are averaged with";
         self.averages = o.named_or_auto("averages", self.averages, help)?;
+        let help = "bodies that are tied for good: rows between them (none), one body (ties), or by the mesh (auto)";
+        self.merge = o.named("merge", self.merge, help)?;
         let help = "bound on the condition number where coefficients jump inside bodies: off, auto or a number above 1";
         let text = o.string("adaptive", &self.adaptive.name(), help)?;
         self.adaptive = Adaptive::parse(&text).ok_or_else(|| {

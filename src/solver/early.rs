@@ -106,7 +106,7 @@ impl FetiFeti {
         if settings.method.certify {
             return self.certified(found, steps);
         }
-        let mut solution = self.solution(found, steps);
+        let mut solution = self.solution(found, steps)?;
         solution.certified = Some(verdict);
         Ok(solution)
     }

@@ -7,6 +7,7 @@ mod build;
 mod friction;
 pub mod idle;
 mod law;
+pub mod merged;
 mod rows;
 
 pub use friction::{FrictionBound, FrictionNode};

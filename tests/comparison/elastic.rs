@@ -105,7 +105,9 @@ traction = { right = [0.3, 0.1] }
 fn all_methods_agree_on_tied_plates() {
     let report = compare("plane", PLANE, &[]);
     check(&report);
-    assert_eq!(methods(&report), ALL);
+    // The third row has the tied plates as one body.
+    let listed = methods(&report);
+    assert_eq!((listed[0], &listed[1..]), ("fetifeti", &ALL[..]));
     assert_eq!(
         (report.facts.dofs, report.supports),
         (2 * 25 * 13 - 13 - 13, 0)

@@ -118,7 +118,7 @@ fn solved(session: &Session, scene: &Scene, dir: &Path) -> Result<Fate> {
             solutions: Vec::new(),
         },
     };
-    match solve_ours(session, scene, &job, 1, &file) {
+    match solve_ours(session, scene, &job, (1, false), &file) {
         Ok(outcome) => {
             // Where rounding keeps the residual above the bound, the error says whether it matters.
             let converged = outcome.reason.starts_with("CONVERGED");

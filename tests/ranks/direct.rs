@@ -12,7 +12,7 @@ use crate::support::assembled::{Assembled, Place};
 use crate::support::mpi::{as_rank, Scratch};
 use crate::support::sample::{all_cases, of};
 use base::Error;
-use fetifeti::settings::MethodSettings;
+use fetifeti::settings::{MergeKind, MethodSettings};
 use fetifeti::FetiFeti;
 use parallel::exchange::gather_all;
 use petsc::Session;
@@ -24,6 +24,9 @@ const RTOL: f64 = 1e-12;
 const RIGHT: f64 = 1e-8;
 
 const RANKS: [usize; 3] = [1, 2, 4];
+
+/// So many ranks have bodies that are tied for good as one.
+const MERGING: usize = 2;
 
 /// Whether scene `k` of a folder is solved on so many ranks.
 fn on(k: usize, ranks: usize) -> bool {
@@ -79,7 +82,10 @@ impl Answer {
 pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> base::Result<()> {
     let share = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| share.contains(&s))?;
-    let settings = MethodSettings::default().rtol(RTOL);
+    let mut settings = MethodSettings::default().rtol(RTOL);
+    if session.size() == MERGING {
+        settings = settings.merge(MergeKind::Ties);
+    }
     let mut solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
     if !solution.converged() {

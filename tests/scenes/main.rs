@@ -24,6 +24,7 @@ mod instances;
 mod instances_input;
 mod loose;
 mod many_bodies;
+mod merged;
 mod mesh_mistakes;
 mod meshes;
 mod mortar;

@@ -126,7 +126,7 @@ pub(super) fn bodies(
     let columns = &solver.dual().natural.columns;
     let each = scene.bodies.iter().zip(&sums).enumerate();
     let of_body = |(b, (body, sums)): (usize, (&Body, &ForceSums))| {
-        let floats = !columns.of(b).is_empty();
+        let floats = !columns.of(solver.group(b)).is_empty();
         let held = !body.prescribed.is_empty() || supported.binary_search(&b).is_ok();
         let free = error.free.binary_search(&b).is_ok();
         body_balance(scene, body, sums, (floats, held, free), &error)

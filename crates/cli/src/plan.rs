@@ -12,7 +12,7 @@ use super::plan_tables::{bodies, interfaces, LIST};
 use super::record::adaptive;
 use super::solve::lines;
 use base::Result;
-use fetifeti::inside::{watch, ProblemSizes, JUMPS};
+use fetifeti::inside::{groups, watch, ProblemSizes, JUMPS};
 use fetifeti::settings::{Adaptive, MethodSettings};
 use fetifeti::{FetiFeti, Problem};
 use parallel::team::Team;
@@ -41,6 +41,13 @@ pub fn run(session: &Session, args: PlanArguments) -> Result<()> {
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
     let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene));
+    for group in groups(session, substructures.clone(), &settings) {
+        let _ = writeln!(
+            out,
+            "{:<22}{group}: one body for the method, without the rows between them",
+            "merged"
+        );
+    }
     let deflation = deflation(session, substructures, settings, &coefficient)?;
     let _ = writeln!(out, "{:<22}{deflation}", "adaptive");
     let record = report(session, &scene, &sizes)?;
@@ -87,7 +94,7 @@ fn deflation(
     let Some(report) = &adaptive.deflation else {
         return Ok(adaptive.constraints_text());
     };
-    let names = &solver.problem().body_names;
+    let names = &solver.method().problem().body_names;
     let counts = report.by_body.iter().zip(names).filter(|c| *c.0 > 0);
     let listed: Vec<String> = counts
         .clone()

@@ -42,7 +42,9 @@ pub(super) fn report(
     let [l2, h1, energy_norm] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
     let rows = solution.rows();
-    let mut active = [rows.iter().filter(|r| r.holds()).count() as f64];
+    // Rows inside merged bodies always hold.
+    let holding = rows.iter().filter(|r| r.holds()).count();
+    let mut active = [(holding - solver.n_merged_rows()) as f64];
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
         schema: SolveReport::SCHEMA.into(),
@@ -65,7 +67,8 @@ pub(super) fn report(
         ranks: session.size(),
         threads: dual.stiffness.team.threads(),
         bodies: scene.n_bodies(),
-        floating_bodies: facts.floating_bodies,
+        floating_bodies: floating_bodies(scene, solver),
+        groups: solver.n_groups(),
         subdomains: scene.n_subdomains(),
         dofs: scene.dofs(),
         multipliers: json::Multipliers {
@@ -127,6 +130,13 @@ pub(super) fn report(
         check: None,
         rtol: solver.ksp().tolerances()?.0,
     })
+}
+
+/// Number of bodies that nothing holds; those that the method has as one float together.
+fn floating_bodies(scene: &Scene, solver: &FetiFeti) -> usize {
+    let columns = &solver.dual().natural.columns;
+    let floats = |b: &usize| !columns.of(solver.group(*b)).is_empty();
+    (0..scene.n_bodies()).filter(floats).count()
 }
 
 /// The record of a solver of GᵀQG.

@@ -302,9 +302,19 @@ impl Scene {
     }
 
     /// Whether a body is a mesh of cells in space. Boxes are cut regularly.
-    pub(super) fn is_ragged(&self) -> bool {
+    pub fn is_ragged(&self) -> bool {
         let cells = |b: &Body| b.mesh().cells().is_some();
         self.dim() == 3 && self.bodies.iter().any(cells)
+    }
+
+    /// Whether a whole face ties two bodies node by node; the method may make them one
+    /// ([`MergeKind`](fetifeti::settings::MergeKind)).
+    pub fn has_whole_ties(&self) -> bool {
+        self.interfaces.iter().any(|i| {
+            let tied = i.shared.iter().all(|s| s.link == crate::Link::Tied);
+            let matching = i.mortar.is_none() && i.unmatched.is_empty();
+            tied && matching && !i.shared.is_empty() && i.bodies[0] != i.bodies[1]
+        })
     }
 
     /// Number C of components of the field.

@@ -15,6 +15,7 @@ use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
+use crate::feti::subdomain::which::Operator;
 use crate::status::Status;
 use crate::Result;
 use cholesky::lanes::LANES;
@@ -93,6 +94,34 @@ impl LinearMethod {
             solve_seconds,
             recover_seconds,
         })
+    }
+
+    /// g − S u_Γ of each local subdomain, by local dof: the forces of rows and of neighbours that its displacements ask
+    /// for, with u_Γ = S̃⁺(g − Bᵀ λ) as it is before the remaining jumps are averaged. So the copies of a dof inside a
+    /// body are in equilibrium to rounding, however far the iteration went. Zero inside. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub(crate) fn interface_forces(&self, lambda: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let dual = self.dual();
+        let stiffness = &dual.stiffness;
+        let loads = Loads::new(&self.problem, &dual);
+        let (loaded, _) = loads.with_multipliers(&self.problem, &dual, lambda)?;
+        let mut work = stiffness.work();
+        let all = work.iter_mut().zip(loaded);
+        all.for_each(|(w, g)| w.v = g);
+        stiffness.s_plus(&mut work)?;
+        let (problem, locals, loads) = (&self.problem, &stiffness.locals, &loads.g);
+        let forces = stiffness.team.map(work.len(), |j| {
+            let local = &locals[j];
+            let mut s_u = vec![0.0; work[j].y.len()];
+            local.apply_one(Operator::S, &work[j].y, &mut s_u);
+            let mut out = vec![0.0; problem.local[j].f.len()];
+            let on_gamma = local.gamma().interface.iter().zip(&loads[j]).zip(&s_u);
+            on_gamma.for_each(|((&i, g), s_u)| out[i as usize] = g - s_u);
+            out
+        });
+        Ok(forces)
     }
 
     /// Displacements of each local subdomain for the present iterate, for a monitor of the Krylov method. `None` if no

@@ -26,9 +26,11 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
     let memory_at_start = memory(session);
     let scene = distribution::load(session, &job.scene)?;
     let outcome = match &job.task {
-        BaselineTask::FetiFeti { threads, solution } => {
-            ours::solve(session, &scene, &job, *threads, solution)?
-        }
+        BaselineTask::FetiFeti {
+            threads,
+            merges,
+            solution,
+        } => ours::solve(session, &scene, &job, (*threads, *merges), solution)?,
         BaselineTask::Baseline {
             name,
             rescue,

@@ -12,7 +12,7 @@ use crate::assembled::rows::Inequalities;
 use crate::assembled::system::{Copies, MatrixFormat};
 use crate::assembled::unknowns::Unknowns;
 use base::Result;
-use fetifeti::settings::MethodSettings;
+use fetifeti::settings::{MergeKind, MethodSettings};
 use fetifeti::{FetiFeti, Solution, Subdomain};
 use parallel::exchange::{gather_all, max_all};
 use parallel::meter::{memory, timed};
@@ -28,13 +28,16 @@ pub fn solve(
     session: &Session,
     scene: &Scene,
     job: &Job,
-    threads: usize,
+    (threads, merges): (usize, bool),
     file: &Path,
 ) -> Result<Outcome> {
     Options::new(session, "fetifeti_").set_default("threads", &threads.to_string())?;
     let (substructures, assemble) = timed(session, || distribution::substructures(session, scene))?;
     // Recycled directions of one attempt would shorten the next one, which is the one that is timed.
-    let settings = MethodSettings::default().rtol(job.rtol).recycle(0);
+    let mut settings = MethodSettings::default().rtol(job.rtol).recycle(0);
+    if merges {
+        settings = settings.merge(MergeKind::Ties);
+    }
     let (solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     let mut solver = Some(solver);
     // The assembled matrix serves for the residual only: its time and memory do not count.

@@ -7,6 +7,7 @@ use super::table::{Baseline, BaselineCase};
 use super::task::BaselineTask;
 use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
+use parallel::exchange::any;
 use petsc::{Options, Session};
 use report::tables::summary::ranks;
 use scene::Scene;
@@ -18,6 +19,9 @@ const INNER: f64 = 0.1;
 /// subdomain of a scene of 512 bodies, were more than 24 GB, and the system ended other programs.
 const MAX_RANKS: usize = 256;
 
+/// The layout of ours in which bodies that are tied for good are one.
+const MERGED: &str = "merged";
+
 /// The layout with as many ranks as cores that keeps the subdomains apart.
 const PACKED: &str = "packed";
 
@@ -25,8 +29,9 @@ const PACKED: &str = "packed";
 pub struct PlannedRun {
     /// `None`: ours.
     pub baseline: Option<&'static Baseline>,
-    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
-    /// `subdomain`, or `packed`: a rank per core with several subdomains in its matrix.
+    /// How the method uses the machine: `threads`, `ranks` or `merged` (threads, and tied bodies as one) for ours, for
+    /// the others a rank per `core`, `body` or `subdomain`, or `packed`: a rank per core with several subdomains in its
+    /// matrix.
     pub layout: &'static str,
     /// MPI ranks.
     pub ranks: usize,
@@ -70,6 +75,7 @@ impl PlannedRun {
         match self.baseline {
             None => BaselineTask::FetiFeti {
                 threads: self.threads,
+                merges: self.layout == MERGED,
                 solution,
             },
             Some(b) => BaselineTask::Baseline {
@@ -184,19 +190,31 @@ fn runs(
     };
     let given = ours_given(session)?;
     let (subdomains, bodies) = (scene.n_subdomains(), scene.n_bodies());
+    let options = |layout| match layout {
+        MERGED => format!("-fetifeti_merge ties {given}")
+            .trim_end()
+            .to_string(),
+        _ => given.clone(),
+    };
     let ours = |layout, ranks, threads| PlannedRun {
         baseline: None,
         layout,
         ranks,
         threads,
         parts: Some(subdomains),
-        options: [given.clone(), given.clone()],
+        options: [options(layout), options(layout)],
         given: String::new(),
         missing: None,
     };
     let mut runs = vec![ours("threads", 1, cores)];
     if cores > 1 && subdomains > 1 {
         runs.push(ours("ranks", cores.min(subdomains), 1));
+    }
+    let asked = Options::new(session, "fetifeti_").has("merge")?;
+    let tied = !scene.is_ragged() && any(session.comm(), scene.has_whole_ties());
+    if layouts == Layouts::Two && tied && !asked {
+        // The assembled problem that the others solve knows no rows on these faces.
+        runs.push(ours(MERGED, 1, cores));
     }
     for &baseline in baselines {
         let options = [

@@ -29,6 +29,8 @@ pub enum BaselineTask {
     FetiFeti {
         /// Threads per rank.
         threads: usize,
+        /// Whether tied bodies are one.
+        merges: bool,
         /// Where the solution goes.
         solution: PathBuf,
     },

@@ -56,6 +56,8 @@ pub struct SolveReport {
     pub bodies: usize,
     /// Bodies whose stiffness matrix is singular.
     pub floating_bodies: usize,
+    /// Bodies of the method: bodies that are merged count once.
+    pub groups: usize,
     /// Subdomains over all bodies.
     pub subdomains: usize,
     /// Free degrees of freedom; one shared by subdomains of a body counts once.

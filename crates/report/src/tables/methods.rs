@@ -5,8 +5,9 @@ use crate::json::{CompareContact, MethodRun};
 
 /// The words for layouts, for the text below a table.
 pub(super) const LAYOUTS: &str = "\
-layout: threads or ranks for ours; else a rank per subdomain, body or core (one part each: subdomains of a rank are \
-merged),\nor packed: a rank per core, whose MATIS keeps its subdomains apart (PETSc 3.21 and later);";
+layout: threads or ranks for ours, or merged: threads, and bodies tied by whole faces are one, as they are for the \
+others;\nelse a rank per subdomain, body or core (one part each: its subdomains are merged),\nor packed: a rank per \
+core, whose MATIS keeps its subdomains apart (PETSc 3.21 and later);";
 
 /// The options of each method, a line each; layouts with the same options share one.
 pub(super) fn options<'a>(runs: impl Iterator<Item = &'a MethodRun>) -> String {

@@ -26,12 +26,16 @@ pub fn solve(r: &SolveReport) -> String {
         0 => "none floating".to_string(),
         n => format!("{n} floating"),
     };
+    let merged = match r.groups {
+        n if n == 0 || n == r.bodies => String::new(),
+        n => format!(", merged into {n}"),
+    };
     let mut lines = vec![
         ("scene", r.scene.clone()),
         (
             "bodies",
             format!(
-                "{} ({floating}), {} subdomains on {}",
+                "{}{merged} ({floating}), {} subdomains on {}",
                 r.bodies,
                 r.subdomains,
                 ranks(r.ranks)

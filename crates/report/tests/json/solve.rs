@@ -22,6 +22,7 @@ fn report() -> SolveReport {
         threads: 1,
         bodies: 2,
         floating_bodies: 1,
+        groups: 2,
         subdomains: 8,
         dofs: 100,
         multipliers: Multipliers {
@@ -80,6 +81,7 @@ fn solve_report_has_the_promised_keys() {
         "ranks",
         "bodies",
         "floating_bodies",
+        "groups",
         "subdomains",
         "dofs",
         "multipliers",

@@ -21,8 +21,7 @@ pub(super) fn add(solver: &FetiFeti, state: Option<&State>, gaps: &mut [f64]) {
     let Some(state) = state.filter(|s| !s.slid.is_empty()) else {
         return;
     };
-    let dual = solver.dual();
-    let slid = dual.stiffness.jump.in_given_order(&state.slid);
+    let slid = solver.in_given_order(&state.slid);
     gaps.iter_mut().zip(slid).for_each(|(c, a)| *c += a);
 }
 
@@ -50,7 +49,7 @@ pub(super) fn after(
         .filter(|&i| jump.law[i].is_friction())
     {
         let a = known.get(i).copied().unwrap_or(0.0);
-        out[i] = a + solution.gaps[i] + drags[jump.given(i)];
+        out[i] = a + solution.gaps[i] + drags[solver.given_row(i)];
     }
     Ok(out)
 }
@@ -82,7 +81,7 @@ pub(super) fn renewed(
             out[i] = 0.0;
             continue;
         }
-        let given = jump.given(i);
+        let given = solver.given_row(i);
         let row = &rows[given];
         let force = places(scene, &row.label, true).enumerate();
         let force = force.filter_map(|(k, place)| Some((k, forces.get(&place)?)));

@@ -9,7 +9,7 @@ use crate::assembled::reference::{Reference, ResidualPrecision};
 use crate::assembled::system::Copies;
 use crate::baselines::single;
 use base::{ErrorKind, Result};
-use fetifeti::settings::{Adaptive, MethodSettings};
+use fetifeti::settings::{Adaptive, MergeKind, MethodSettings};
 use fetifeti::{FetiFeti, Problem, Solution, Subdomain};
 use petsc::Session;
 use report::output;
@@ -161,7 +161,10 @@ fn ours(
 }
 
 fn solve(session: &Session, problem: &Problem, adaptive: Adaptive) -> Result<MeasuredSolve> {
-    let settings = MethodSettings::default().rtol(RTOL).adaptive(adaptive);
+    let settings = MethodSettings::default()
+        .rtol(RTOL)
+        .merge(MergeKind::None)
+        .adaptive(adaptive);
     let problem = problem.clone();
     let clock = Instant::now();
     let mut solver = FetiFeti::new(session, problem, settings)?;

@@ -19,7 +19,7 @@ use crate::assembled::layout::UnknownLayout;
 use crate::assembled::reference::Reference;
 use crate::assembled::system::Copies;
 use base::{Error, Result};
-use fetifeti::settings::MethodSettings;
+use fetifeti::settings::{MergeKind, MethodSettings};
 use fetifeti::solution::SolvedRow;
 use fetifeti::FetiFeti;
 use parallel::exchange::highest;
@@ -172,7 +172,7 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         subdomains: scene.n_subdomains(),
         ..Record::default()
     };
-    let settings = MethodSettings::default().rtol(RTOL);
+    let settings = MethodSettings::default().rtol(RTOL).merge(MergeKind::None);
     let mut solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
         // The scene has been read: a refusal from here on says that it has no solution.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use self::friction::{ContactLaw, FrictionRow};
 use self::scenes::{FrictionScene, SCENES};
 use base::{Error, Result};
-use fetifeti::settings::{Adaptive, MethodSettings, PcType};
+use fetifeti::settings::{Adaptive, MergeKind, MethodSettings, PcType};
 use fetifeti::FetiFeti;
 use parallel::contiguous_share;
 use petsc::Session;
@@ -217,6 +217,7 @@ pub fn grid(
         let settings = MethodSettings::default()
             .pc_type(pc)
             .rtol(1e-9)
+            .merge(MergeKind::None)
             .adaptive(Adaptive::Off);
         let mut solver = FetiFeti::new(session, problem.clone(), settings)?;
         let solution = solver.solve()?;

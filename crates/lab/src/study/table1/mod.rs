@@ -17,7 +17,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use base::{Error, Result};
-use fetifeti::settings::{Adaptive, MethodSettings, PcType};
+use fetifeti::settings::{Adaptive, MergeKind, MethodSettings, PcType};
 use fetifeti::solution::SetUpSummary;
 use fetifeti::{FetiFeti, Status};
 use petsc::Session;
@@ -131,6 +131,7 @@ fn side(
         // The paper's method without additions.
         let settings = MethodSettings::default()
             .pc_type(pc)
+            .merge(MergeKind::None)
             .adaptive(Adaptive::Off);
         let mut solver = FetiFeti::new(session, substructures, settings)?;
         let solution = solver.solve()?;
