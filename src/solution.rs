@@ -2,7 +2,7 @@
 
 pub use crate::contact::{ActiveSetProgress, Observer, State, Step};
 pub use crate::feti::deflation::Cost;
-pub use crate::feti::krylov::solve::{Judge, JudgeTiming};
+pub use crate::feti::krylov::verdict::{Judge, JudgeTiming};
 use crate::feti::LinearSolution;
 pub use crate::feti::{
     CertificationResult, Certified, Communication, FreeMotion, Kkt, PerIteration, SetUpSummary,

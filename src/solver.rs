@@ -11,8 +11,8 @@ use std::cell::Ref;
 use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
 use crate::feti::krylov::loads::Loads;
-use crate::feti::krylov::solve::Judge;
 use crate::feti::krylov::together::Begun;
+use crate::feti::krylov::verdict::{HostJudge, HostSolution, Judge};
 use crate::feti::operators::dual::Dual;
 use crate::feti::{Communication, LinearMethod, LinearSolution, SetUpSummary, Spectrum};
 use crate::settings::Settings;
@@ -131,15 +131,15 @@ impl FetiFeti {
     /// # Errors
     /// As [`FetiFeti::solve`], and those of `enough`.
     pub fn solve_until(&mut self, enough: &Judge) -> Result<Solution> {
-        self.judged(None, enough)
-    }
-
-    /// [`FetiFeti::solve_until`] for a host whose monitors look at the solver during the solve.
-    pub(crate) fn judged(&self, begun: Option<Begun>, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         self.check_idle()?;
-        let found = self.method.solve_begun(begun, Some(enough))?;
-        self.certified(found, Vec::new())
+        self.certified(self.method.solve(Some(enough))?, Vec::new())
+    }
+
+    /// [`FetiFeti::solve_until`] for a host: its monitors look at the solver, its bodies have no idle motions.
+    pub(crate) fn judged(&self, begun: Option<Begun>, enough: &HostJudge) -> Result<HostSolution> {
+        let _staged = self.solve_stage.scope()?;
+        self.method.solve_for_host(begun, enough)
     }
 
     /// The present loads, condensed to the interfaces, to be given to [`FetiFeti::together`]. Collective.

@@ -213,6 +213,12 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscCall(VecDestroy(&R));
   PetscCall(VecDestroy(&D));
   ff->running = PETSC_FALSE;
+  if (status == FF_UNFIT && !ksp->errorifnotconverged) { /* a load that is no number */
+    ksp->reason = KSP_DIVERGED_NANORINF;
+    PetscCall(Explain(ksp, ksp->reason));
+    PetscCall(FFSpoil(ksp->vec_sol));
+    PetscFunctionReturn(0);
+  }
   if (status) PetscCall(ff_raise(ksp, status));
   ff->largest  = result.largest;
   ff->smallest = result.smallest;

@@ -27,8 +27,8 @@ typedef struct {
 } KSP_FETIFETI;
 
 /* The return value of a Rust function: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a
-   sentence about a matrix that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE,
-   a sentence that other ranks may not have. */
+   sentence about a matrix that cannot be factored or a load that is no number; FF_RAISED, after a PETSc error that has
+   been reported; or FF_ALONE, a sentence that other ranks may not have. */
 #define FF_SENTENCE 1
 #define FF_UNFIT    2
 #define FF_RAISED   3

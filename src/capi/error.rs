@@ -8,8 +8,8 @@ use std::cell::RefCell;
 use std::ffi::{c_char, c_int, CStr, CString};
 
 /// An error with a message, the same on all ranks.
-const SENTENCE: c_int = 1;
-/// An error about a matrix that cannot be factored, with a message, the same on all ranks.
+pub const SENTENCE: c_int = 1;
+/// An error about a matrix that cannot be factored, or a load that is no number, with a message, the same on all ranks.
 pub const UNFIT: c_int = 2;
 /// PETSc has already reported the error.
 const RAISED: c_int = 3;

@@ -1,11 +1,11 @@
 //! The functions behind KSPFETIFETI (wrappers/kspfetifeti.h).
 
-use super::error::{remark, status, UNFIT};
+use super::error::{remark, status, SENTENCE, UNFIT};
 use super::handle::lent;
 use crate::embed::torn::marked;
 use crate::embed::{Embedded, Local, SetUp, SetUpWork, Torn};
-use crate::feti::krylov::solve::JudgeTiming;
 use crate::feti::krylov::together::Begun;
+use crate::feti::krylov::verdict::{JudgeTiming, Verdict};
 use crate::settings::MethodSettings;
 use crate::status::Status;
 use crate::{Error, Result};
@@ -205,7 +205,8 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     x: raw::Vec,
     report: *mut PluginReport,
 ) -> c_int {
-    status("KSPSolve_FETIFETI", |at_work| {
+    let mut infinite = false;
+    let code = status("KSPSolve_FETIFETI", |at_work| {
         // A monitor may ask for the present solution while this runs: hence no unique reference.
         // SAFETY: by the caller.
         let (plugin, wishes) = unsafe { (&*solver.cast::<PluginSolver>(), &*wishes) };
@@ -214,30 +215,39 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         let begun = usize::try_from(wishes.begun).ok();
         let begun = begun.and_then(|c| plugin.begun.borrow_mut().get_mut(c)?.take());
         let (b, x) = (lent(b, solver.session())?, lent(x, solver.session())?);
+        infinite = !b.norm2()?.is_finite();
         forward(solver, wishes)?;
         let (a, r) = (lent(a, solver.session())?, b.duplicate()?);
         let (before, slow) = (Cell::new(f64::INFINITY), Cell::new(0));
         let mut outcome = solver.solve(begun, &b, &x, &|x, look| {
             if wishes.goal < 0.0 {
                 // The host asked for the test of the jumps alone, which has not been made before the first iteration.
-                return Ok((look == JudgeTiming::Before).then_some(1.0));
+                return Ok(match look {
+                    JudgeTiming::Before => Verdict::Further(1.0),
+                    JudgeTiming::After => Verdict::Enough,
+                });
             }
             a.mult(x, &r)?;
             r.aypx(-1.0, &b)?;
             let norm = r.norm2()?;
+            if norm <= wishes.goal {
+                return Ok(Verdict::Satisfied);
+            }
             if look == JudgeTiming::Before {
-                return Ok((norm > wishes.goal).then_some(1.0));
+                return Ok(Verdict::Further(1.0));
             }
             // It may lag behind the jumps, from which it follows: these then have to fall further. A residual that is
             // still not halved by that has reached the rounding errors.
             let halved = norm <= 0.5 * before.replace(norm);
             slow.set(if halved { 0 } else { slow.get() + 1 });
-            let done = norm <= wishes.goal || slow.get() > MOST_SLOW || !norm.is_finite();
+            if slow.get() > MOST_SLOW || !norm.is_finite() {
+                return Ok(Verdict::Enough);
+            }
             let factor = 0.5 * wishes.goal.max(1e-4 * norm) / norm;
-            Ok((!done).then_some(factor * FURTHER.powi(slow.get())))
+            Ok(Verdict::Further(factor * FURTHER.powi(slow.get())))
         })?;
         let mut why = outcome.status.remedy().map(String::from);
-        if outcome.status.converged() && wishes.goal >= 0.0 {
+        if outcome.status.converged() && wishes.goal >= 0.0 && !outcome.satisfied {
             a.mult(&x, &r)?;
             r.aypx(-1.0, &b)?;
             let norm = r.norm2()?;
@@ -269,7 +279,13 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
             }
         };
         Ok(())
-    })
+    });
+    // Another KSP may have failed before, which says so by such a load: PETSc has a reason for it.
+    if code == SENTENCE && infinite {
+        UNFIT
+    } else {
+        code
+    }
 }
 
 /// Applies the outer KSP's tolerances, unless options of the inner KSP override them.

@@ -161,7 +161,7 @@ impl Shares {
         wrong.map_or(Ok(()), |(&g, dof)| {
             Err(Error::input(format!(
                 "the right-hand side is {} at global dof {dof}, expected finite numbers: \
-                 look where the host's assembly of the load divides by zero",
+                 look where the host's assembly of the load divides by zero, or which solver before this one failed",
                 load[g as usize]
             )))
         })

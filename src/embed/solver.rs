@@ -21,8 +21,6 @@ use super::subdomains::{subdomain, SubdomainProperties};
 use super::torn::{GivenRows, Torn};
 use super::touched::RankProblem;
 use crate::contact::{Observer, State as ContactState};
-use crate::feti::krylov::solve::JudgeTiming;
-use crate::feti::krylov::together::Begun;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::status::Status;
@@ -30,9 +28,6 @@ use crate::substructures::{Law, Problem, SolvedRow};
 use crate::{Error, FetiFeti, Result, Solution};
 use parallel::halo::Halo;
 use petsc::{Event, Session, Vec as PetscVec};
-
-/// Looks at the solution x for the host: the factor by which the residual should fall further, or `None`.
-pub type HostJudge<'a> = dyn Fn(&PetscVec, JudgeTiming) -> Result<Option<f64>> + 'a;
 
 /// The result of a solve.
 #[derive(Debug, Clone)]
@@ -237,28 +232,6 @@ impl Embedded {
         })
     }
 
-    /// Solves for the right-hand side b. Whenever x satisfies the tolerance of the dual problem, and before an
-    /// iteration that may have nothing to do, `enough` is called: it returns the factor by which the residual should
-    /// fall further, or `None`. The iteration may have been run already, together with others. Collective.
-    ///
-    /// # Errors
-    /// A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
-    pub fn solve(
-        &self,
-        begun: Option<Begun>,
-        b: &PetscVec,
-        x: &PetscVec,
-        enough: &HostJudge,
-    ) -> Result<EmbeddedResult> {
-        self.load(b, None)?;
-        let solution = self.solver().judged(begun, &|u, look| {
-            self.put_together(u, x)?;
-            enough(x, look)
-        })?;
-        self.put_together(&solution.u, x)?;
-        Ok(outcome(&solution))
-    }
-
     /// Solves for the right-hand side b with the rows that the host gave. `held` has the values of the dofs that the
     /// host holds, and zero elsewhere. A contact loop starts from the result of the last one; `observe` is called after
     /// each of its steps. Collective.
@@ -366,7 +339,7 @@ impl Embedded {
 
     /// x ← the solution assembled from the displacements of the subdomains. Within the tolerance, copies in different
     /// bodies may differ; the average weights them by stiffness.
-    fn put_together(&self, u: &[Vec<f64>], x: &PetscVec) -> Result<()> {
+    pub(super) fn put_together(&self, u: &[Vec<f64>], x: &PetscVec) -> Result<()> {
         let ghost = self.shares.together(u, &self.values.borrow());
         self.halo.sum(&ghost, x)
     }

@@ -152,8 +152,22 @@ fn a_reason_comes_with_its_sentence() {
     }
     let out = program.with_plugin(2, "-ksp_type fetifeti -no_number load");
     let sentence = "the right-hand side is NaN at global dof 158, expected finite numbers";
+    let reason = format!("FETI-FETI: KSP_DIVERGED_NANORINF: {sentence}");
+    assert!(out.stderr.contains(&reason), "{}", out.all());
+    assert!(
+        out.stderr.contains("one solve: DIVERGED_NANORINF"),
+        "{}",
+        out.all()
+    );
+    let strict = "-ksp_type fetifeti -no_number load -ksp_error_if_not_converged";
+    let out = program.with_plugin(2, strict);
     assert_ne!(out.code, 0);
-    assert!(out.stderr.contains(sentence), "{}", out.all());
+    assert!(
+        out.stderr
+            .contains(&format!("PETSC ERROR: FETI-FETI: {sentence}")),
+        "{}",
+        out.all()
+    );
     assert!(!out.stderr.contains("KSPSetTolerances"), "{}", out.all());
 }
 

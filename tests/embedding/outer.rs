@@ -114,7 +114,7 @@ fn every_way_of_looking() {
         }
         // PETSc's own log is an object that 3.26 counts as left.
         let out = program.with_plugin(2, &format!("{solver} -log_view"));
-        for event in ["Tear", "Local", "Primal", "Coarse", "F", "M", "P"] {
+        for event in ["Tear", "Local", "Primal", "Coarse", "F", "M", "P", "Resid"] {
             let name = format!("FetiFeti{event} ");
             assert!(out.stdout.contains(&name), "no {name}in {}", out.stdout);
         }

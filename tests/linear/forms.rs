@@ -166,6 +166,45 @@ fn directions_are_kept_from_load_to_load() {
     });
 }
 
+/// A loose solve is part of another iteration, for which it has to be the same map again and again: once there are
+/// enough directions, a load has the same answer whatever has been solved in between.
+#[test]
+fn loose_solves_do_not_depend_on_the_loads_before() {
+    with_session(|session| {
+        let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\n\
+                    load = \"1 + x\"\ndirichlet = [\"left\"]\n";
+        let again = |rtol: f64| {
+            let mut solver = solver(session, text, MethodSettings::default().recycle(3));
+            let ksp = solver.ksp();
+            ksp.set_tolerances(Some(rtol), None, None, None)
+                .expect("set");
+            let rows = vec![0.0; solver.problem().rows.len()];
+            let load = |step: usize| {
+                let local = solver.problem().local.iter();
+                let of = |s: &fetifeti::Subdomain| -> Vec<f64> {
+                    let factor = |&dof: &u64| ((dof as usize * (step + 3)) % 7) as f64 - 2.5;
+                    s.f.iter()
+                        .zip(&s.dofs)
+                        .map(|(f, d)| f * factor(d))
+                        .collect()
+                };
+                (local.map(of).collect::<Vec<_>>(), rows.clone())
+            };
+            let loads = [load(0), load(1), load(2), load(1)];
+            let found = loads.map(|(f, gaps)| {
+                solver.set_loads(f, &gaps);
+                solver.solve().expect("solved")
+            });
+            assert!(found.iter().all(|s| s.converged() && s.iterations > 0));
+            assert!(found[0].iterations >= 3, "{}", found[0].iterations);
+            far(&found[1], &found[3])
+        };
+        assert_eq!(again(1e-3), 0.0);
+        // Where the next load is another one of the same kind, recent directions serve it better.
+        assert!(again(1e-8) > 0.0);
+    });
+}
+
 #[test]
 fn sparse_solves_on_ranks() {
     let scratch = Scratch::new("operators_forms");

@@ -78,6 +78,7 @@ impl Certificate {
         lambda: &PetscVec,
         known: f64,
     ) -> Result<Certificate> {
+        let _timed = dual.timed_certificate()?;
         let comm = dual.comm();
         let stiffness = &dual.stiffness;
         let jump = &stiffness.jump;

@@ -37,6 +37,7 @@ impl LinearMethod {
     /// exact. The cost is about half an iteration. Collective.
     pub(crate) fn energy_error(&self, solution: &LinearSolution, bound: f64) -> Result<Estimate> {
         let (problem, dual) = (&self.problem, &*self.dual());
+        let _timed = dual.timed_certificate()?;
         let (stiffness, left) = (&dual.stiffness, &solution.left);
         let mut inside = 0.0;
         let loads = if INSIDE * left.inside <= bound {

@@ -158,9 +158,6 @@ impl KrylovRun {
     }
 }
 
-/// A run, and the displacements of its result if a judge has seen them.
-pub type JudgedRun = (KrylovRun, Option<Vec<Vec<f64>>>);
-
 /// Adds the Krylov method's correction to `lambda`. `residual` is Pᵀ r on entry. `look` may end the run early.
 /// Collective.
 pub fn iterate(
@@ -216,7 +213,7 @@ pub fn iterate(
     rtol_of(control.tolerance.max(control.floor) / start)?;
     let counted = ClockReadings::now();
     let solved = {
-        let _running = system.run(control.observed.then_some(lambda), is_cg);
+        let _running = system.run(control.observed.then_some(lambda), is_cg, rtol);
         let eigenvalue = control.watch.filter(|_| is_cg).map(|w| LargeEigenvalue {
             first: w.from,
             limit: w.limit,

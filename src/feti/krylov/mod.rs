@@ -22,3 +22,4 @@ pub mod system;
 pub mod tally;
 pub mod target;
 pub mod together;
+pub mod verdict;

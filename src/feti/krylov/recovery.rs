@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use super::certificate::{Certificate, Kkt};
-use super::iterate::{JudgedRun, KrylovRun};
+use super::iterate::KrylovRun;
 use super::leftover::Leftover;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
@@ -67,7 +67,7 @@ impl LinearMethod {
     pub(super) fn recovered(
         &self,
         mut at: Iterate,
-        (run, seen): JudgedRun,
+        (run, seen): (KrylovRun, Option<Vec<Vec<f64>>>),
         solve_seconds: f64,
     ) -> Result<LinearSolution> {
         let clock = Instant::now();

@@ -38,6 +38,7 @@ impl Residual {
 
     /// Computes y and r for `lambda`. Collective.
     pub fn evaluate(&mut self, dual: &Dual, loads: &Loads, lambda: &PetscVec) -> Result<()> {
+        let _event = dual.timed_residual()?;
         let stiffness = &dual.stiffness;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         stiffness.dual_halo.fetch(lambda, &mut ghost)?;

@@ -11,13 +11,14 @@
 
 use std::time::Instant;
 
-use super::iterate::{iterate, IterateMonitor as LookAt, IterationControl, JudgedRun, KrylovRun};
+use super::iterate::{iterate, IterateMonitor as LookAt, IterationControl, KrylovRun};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
 use super::residual::{Iterate, ROUNDING};
 use super::target::{to_the_end, Target};
 use super::together::Begun;
+use super::verdict::{HostJudge, HostSolution, Judge, JudgeTiming, JudgedRun, Verdict};
 use crate::feti::method::LinearMethod;
 use crate::status::Status;
 use crate::Result;
@@ -45,19 +46,6 @@ const DEEPEST: f64 = 1e-6;
 /// the loads after large parts of S̃⁺ have cancelled. The judge looks before the iteration tries to reduce it.
 const SUSPICIOUS: f64 = 1e-9;
 
-/// When the judge looks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JudgeTiming {
-    /// Before the first iteration, because there may be nothing left to iterate on.
-    Before,
-    /// After an iteration to the tolerance.
-    After,
-}
-
-/// Judges displacements. Returns the factor by which the residual should fall further, or `None`. Before the first
-/// iteration the factor is not used: anything but `None` lets the iteration begin.
-pub type Judge<'a> = dyn Fn(&[Vec<f64>], JudgeTiming) -> Result<Option<f64>> + 'a;
-
 impl LinearMethod {
     /// Solves the equations on the rows that hold until the tolerance is reached and `enough`, if given, is satisfied.
     /// Collective.
@@ -65,26 +53,50 @@ impl LinearMethod {
     /// # Errors
     /// A load that moves a body which nothing holds; PETSc's own errors, and those of `enough`.
     pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
-        self.solve_begun(None, enough)
+        let Some(enough) = enough else {
+            let (at, judged, seconds) = self.run(None, None)?;
+            return self.finished(at, judged, seconds, false);
+        };
+        let enough = |u: &[Vec<f64>], look: JudgeTiming| {
+            let further = enough(u, look)?;
+            Ok(further.map_or(Verdict::Enough, Verdict::Further))
+        };
+        let (at, judged, seconds) = self.run(None, Some(&enough))?;
+        self.finished(at, judged, seconds, true)
     }
 
-    /// [`LinearMethod::solve`] for a load whose iteration may have been run together with others. Collective.
+    /// [`LinearMethod::solve`] for a host that measures its own equations. The iteration may have been run together
+    /// with others. Collective.
     ///
     /// # Errors
     /// As above.
-    pub fn solve_begun(
+    pub fn solve_for_host(&self, begun: Option<Begun>, enough: &HostJudge) -> Result<HostSolution> {
+        let (at, judged, seconds) = self.run(begun, Some(enough))?;
+        if let (true, Some(u)) = (judged.satisfied, &judged.seen) {
+            self.remember_length(u);
+            return Ok(HostSolution::Satisfied(judged.run));
+        }
+        let found = self.finished(at, judged, seconds, true)?;
+        Ok(HostSolution::Certified(Box::new(found)))
+    }
+
+    /// The iteration, with the last λ and the seconds that it took. Collective.
+    fn run(
         &self,
         begun: Option<Begun>,
-        enough: Option<&Judge>,
-    ) -> Result<LinearSolution> {
+        enough: Option<&HostJudge>,
+    ) -> Result<(Iterate, JudgedRun, f64)> {
         let clock = Instant::now();
         let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
         if let Some(begun) = &begun {
             at.lambda.copy_from(&begun.lambda)?;
         }
         let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
-        let (run, u) = match self.at_once(&mut at, r, enough)? {
-            Some((run, u)) => (begun.map_or(run, |begun| begun.run), u),
+        let judged = match self.at_once(&mut at, r, enough)? {
+            Some(judged) => JudgedRun {
+                run: begun.map_or(judged.run, |begun| begun.run),
+                ..judged
+            },
             None => {
                 let target = Target::new(self, begun.as_ref().map_or(r, |b| b.reference))?;
                 let control = IterationControl::to(target.at_first(), at.residual.size);
@@ -96,16 +108,27 @@ impl LinearMethod {
                 self.meet(&mut at, run, control, &target, enough)? /* y ← S̃⁺(g − Bᵀ λ) + R α             */
             }
         };
-        let seconds = clock.elapsed().as_secs_f64();
-        let found = self.recovered(at, (run, u), seconds)?; /*          u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)    */
+        Ok((at, judged, clock.elapsed().as_secs_f64()))
+    }
+
+    /// The run with its displacements, refined and certified. `asked`: the caller has been asked whether the residual
+    /// should fall further. Collective.
+    fn finished(
+        &self,
+        at: Iterate,
+        judged: JudgedRun,
+        seconds: f64,
+        asked: bool,
+    ) -> Result<LinearSolution> {
+        let found = self.recovered(at, (judged.run, judged.seen), seconds)?; /* u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)  */
         let status = found.status.clone();
         let mut refined = self.refine(found)?; /*                       K du + Bᵀ dλ = f − K u − Bᵀ λ    */
-        if enough.is_some() {
-            // If refinement did not find the missing digits, `enough` decides whether they matter: a relative tolerance
-            // of zero asks for all possible digits.
+        if asked {
+            // If refinement did not find the missing digits, the caller decides whether they matter: a relative
+            // tolerance of zero asks for all possible digits.
             refined.status = status;
         }
-        if enough.is_some() || !refined.status.broke_down() {
+        if asked || !refined.status.broke_down() {
             return self.certify(refined);
         }
         // The operators have lost their digits; the displacements need not have. The certificate says whether they are
@@ -124,25 +147,30 @@ impl LinearMethod {
         &self,
         at: &mut Iterate,
         r: f64,
-        enough: Option<&Judge>,
+        enough: Option<&HostJudge>,
     ) -> Result<Option<JudgedRun>> {
         let Some(enough) = enough.filter(|_| r <= SUSPICIOUS * at.residual.size) else {
             return Ok(None);
         };
         at.place(&self.dual())?;
         let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-        if enough(&u, JudgeTiming::Before)?.is_none() {
-            let run = KrylovRun {
-                iterations: 0,
-                status: Status::NothingToDo,
-                residuals: vec![r],
-                estimate: None,
-                stopped: Stopped::No,
-            };
-            return Ok(Some((run, Some(u))));
+        let verdict = enough(&u, JudgeTiming::Before)?;
+        if let Verdict::Further(_) = verdict {
+            at.evaluate_projected(&self.dual())?;
+            return Ok(None);
         }
-        at.evaluate_projected(&self.dual())?;
-        Ok(None)
+        let run = KrylovRun {
+            iterations: 0,
+            status: Status::NothingToDo,
+            residuals: vec![r],
+            estimate: None,
+            stopped: Stopped::No,
+        };
+        Ok(Some(JudgedRun {
+            run,
+            seen: Some(u),
+            satisfied: verdict == Verdict::Satisfied,
+        }))
     }
 
     /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
@@ -199,7 +227,7 @@ impl LinearMethod {
         mut run: KrylovRun,
         control: IterationControl,
         target: &Target,
-        enough: Option<&Judge>,
+        enough: Option<&HostJudge>,
     ) -> Result<JudgedRun> {
         let IterationControl {
             mut tolerance,
@@ -207,34 +235,44 @@ impl LinearMethod {
             ..
         } = control;
         let (mut asked, mut idle, mut stalled) = (0, false, false);
+        // The displacements take the place of the residual.
+        let kept = enough.map(|_| at.residual.r.duplicate()).transpose()?;
         loop {
             at.place(&self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
             // The interface may not move at all in the solution. Rounding then has the size of S̃⁺ applied to the loads
             // at the start.
             size = size.max(at.residual.size);
             let wanted = target.of_displacements(at.residual.length(&self.dual()), size);
-            let judged = to_the_end(tolerance, wanted);
             if stalled || !run.status.converged() {
                 break;
             }
+            self.dual().p_transpose(&at.residual.r)?; /* r ← Pᵀ r                            */
+            let r = at.residual.r.norm2()?;
+            let judged = to_the_end(tolerance, wanted) || r <= wanted;
             if judged {
-                let Some(enough) = enough.filter(|_| asked < ASKED) else {
+                let (Some(enough), Some(kept)) = (enough.filter(|_| asked < ASKED), &kept) else {
                     break;
                 };
+                kept.copy_from(&at.residual.r)?;
                 let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-                let Some(factor) = enough(&u, JudgeTiming::After)? else {
-                    return Ok((run, Some(u)));
+                let verdict = enough(&u, JudgeTiming::After)?;
+                let Verdict::Further(factor) = verdict else {
+                    return Ok(JudgedRun {
+                        run,
+                        seen: Some(u),
+                        satisfied: verdict == Verdict::Satisfied,
+                    });
                 };
                 asked += 1;
                 // Directions of earlier loads may reach the new tolerance without an iteration: that is progress.
                 idle = false;
                 // The last iteration may have ended far below its tolerance.
-                tolerance = factor * tolerance.min(at.evaluate_projected(&self.dual())?);
+                at.residual.r.copy_from(kept)?;
+                tolerance = factor * tolerance.min(wanted).min(r);
             } else {
                 tolerance = wanted;
             }
             // The remaining iterations are few, and no look at the spectrum may end them.
-            self.dual().p_transpose(&at.residual.r)?;
             let control = IterationControl::to(tolerance, size)
                 .observed()
                 .above_rounding();
@@ -251,7 +289,11 @@ impl LinearMethod {
             stalled = !more.status.converged();
             run.add(more);
         }
-        Ok((run, None))
+        Ok(JudgedRun {
+            run,
+            seen: None,
+            satisfied: false,
+        })
     }
 
     /// The certificate has the last word. Displacements far from equilibrium or from the solution, or rows far from
@@ -293,11 +335,16 @@ impl LinearMethod {
             break;
         }
         if solution.status.converged() {
-            let u = solution.u.iter().flatten();
-            let mine = u.fold(self.length.get(), |a, u| a.max(u.abs()));
-            self.length.set(highest(self.session.comm(), mine));
+            self.remember_length(&solution.u);
         }
         Ok(solution)
+    }
+
+    /// Notes the largest displacement of a solution as one of the problem's scale. Collective.
+    fn remember_length(&self, u: &[Vec<f64>]) {
+        let mine = u.iter().flatten();
+        let mine = mine.fold(self.length.get(), |a, u| a.max(u.abs()));
+        self.length.set(highest(self.session.comm(), mine));
     }
 
     /// The smallest residual that matters beside the scale of the problem: that of displacements in earlier loads, and

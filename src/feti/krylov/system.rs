@@ -8,7 +8,7 @@
 
 use std::cell::{Cell, Ref, RefCell, RefMut};
 
-use super::recycling::Recycle;
+use super::recycling::{Recycle, LOOSE};
 use super::tally::Tally;
 use crate::feti::deflation::matrices::DeflationMatrices;
 use crate::feti::deflation::Deflation;
@@ -47,6 +47,8 @@ struct Running {
     start: Option<PetscVec>,
     /// Whether everything that it applies an operator to is in V.
     stays: bool,
+    /// Whether its directions replace those of earlier iterations.
+    replaces: bool,
 }
 
 /// Marks the iteration as ended when it is dropped.
@@ -153,11 +155,12 @@ impl DualSystem {
     }
 
     /// Marks an iteration as running while the guard lives. `start` is the λ that it corrects, if monitors may ask for
-    /// it; `cg` says that the method is CG.
-    pub(crate) fn run(&self, start: Option<&PetscVec>, cg: bool) -> RunningGuard<'_> {
+    /// it; `cg` says that the method is CG, `rtol` is the tolerance of the solve that it belongs to.
+    pub(crate) fn run(&self, start: Option<&PetscVec>, cg: bool, rtol: f64) -> RunningGuard<'_> {
         let running = Running {
             start: start.cloned(),
             stays: cg && self.keeps_to_v(),
+            replaces: rtol <= LOOSE,
         };
         self.running.replace(Some(running));
         RunningGuard(self)
@@ -237,8 +240,11 @@ impl DualSystem {
     }
 
     fn keep(&self, direction: &PetscVec, image: &PetscVec) -> Result<()> {
-        match *self.running.borrow() {
-            Some(_) => self.recycled.borrow_mut().keep(direction, image),
+        match self.running.borrow().as_ref() {
+            Some(running) => {
+                let mut recycled = self.recycled.borrow_mut();
+                recycled.keep(direction, image, running.replaces)
+            }
             None => Ok(()),
         }
     }

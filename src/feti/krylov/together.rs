@@ -3,7 +3,7 @@
 //! A product reads the factors of every subdomain and waits for memory. With several vectors side by side one reading
 //! serves them all. The iterations themselves know nothing of each other: each load takes as many as it would alone.
 //! What comes before an iteration and after it, the projection of the load, the displacements and their certificate, is
-//! [`LinearMethod::solve_begun`]'s, one load after the other.
+//! [`LinearMethod::solve_for_host`]'s, one load after the other.
 
 use super::iterate::{KrylovRun, NOISE};
 use super::loads::Loads;

@@ -12,7 +12,7 @@ use crate::feti::projector::natural::NaturalCoarse;
 use crate::substructures::Problem;
 use crate::Result;
 use parallel::exchange::total;
-use petsc::{Event, Vec as PetscVec};
+use petsc::{Event, Scope, Vec as PetscVec};
 
 /// F, M⁻¹ and P. Vectors of multipliers have one entry for each row of B that this rank owns.
 pub struct Dual {
@@ -24,7 +24,7 @@ pub struct Dual {
     pub natural: NaturalCoarse,
     /// Whether G belongs to an earlier set of rows.
     stale: bool,
-    events: [Event; 3],
+    events: [Event; 5],
     like: PetscVec,
 }
 
@@ -42,6 +42,8 @@ impl Dual {
                 event("FetiFetiF")?,
                 event("FetiFetiM")?,
                 event("FetiFetiP")?,
+                event("FetiFetiResid")?,
+                event("FetiFetiCertify")?,
             ],
             stale: false,
             like,
@@ -179,6 +181,22 @@ impl Dual {
     pub fn p_transpose(&self, x: &PetscVec) -> Result<()> {
         let _timed = self.events[2].scope()?;
         self.natural.project_transpose(self.comm(), x)
+    }
+
+    /// The event of displacements and jumps that are computed from λ, until the guard is dropped.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn timed_residual(&self) -> Result<Scope> {
+        self.events[3].scope()
+    }
+
+    /// The event of the certificate, until the guard is dropped.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn timed_certificate(&self) -> Result<Scope> {
+        self.events[4].scope()
     }
 
     /// Description of the operators for `-fetifeti_ksp_view`.
