@@ -154,9 +154,9 @@ PetscErrorCode ff_load(KSP ksp, Mat A, MatNullSpace kernel, Vec b, Vec x, Vec B,
   PetscFunctionBegin;
   PetscCall(VecCopy(b, B));
   if (kernel) PetscCall(MatNullSpaceRemove(kernel, B));
+  if (ksp->guess_zero) PetscCall(VecNorm(B, NORM_2, norm)); /* the copy keeps it */
   if (R != B) PetscCall(VecCopy(B, R));
-  if (ksp->guess_zero) PetscCall(VecNorm(R, NORM_2, norm));
-  else PetscCall(Residual(A, B, x, R, norm));
+  if (!ksp->guess_zero) PetscCall(Residual(A, B, x, R, norm));
   if (kernel) PetscCall(MatNullSpaceRemove(kernel, R));
   PetscFunctionReturn(0);
 }
