@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::active_set::ActiveSet;
 use super::augmented::Augmented;
+use super::existence::Existence;
 use super::feasible_set::FeasibleSet;
 use super::friction::{self, node::Node};
 use super::mprgp::{BoundedQuadratic, Setting};
@@ -66,6 +67,9 @@ impl<'a> SmalbeIteration<'a> {
         let dual = method.dual();
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(problem, &dual);
+        if state.reference == 0.0 {
+            Existence::new(method, &dual, settings).if_few(&loads.kernel)?;
+        }
         let mut c = loads.kernel.e.clone();
         a.balance.solve(&mut c);
         let mut shift = vec![0.0; jump.n_owned];

@@ -12,10 +12,6 @@ use super::cover;
 use super::nodes::Nodes;
 use base::linalg::csr::Csr;
 
-/// Fewer dofs than this are ordered one by one: their analysis is short, and another order would change the last digits
-/// of their factors.
-const FEW: usize = 1000;
-
 /// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
 /// outweighs the fill that cutting further would save.
 const LEAF: usize = 12;
@@ -44,17 +40,11 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Vec<Vec<u32>> {
-    let of_dofs = || {
-        let mut work = Cutting::new(k, coordinates, None);
-        work.dissect(interior.to_vec());
-        work.out
-    };
-    if interior.len() < FEW {
-        return of_dofs();
-    }
     let nodes = Nodes::new(k, interior);
     if nodes.members.len() == interior.len() {
-        return of_dofs();
+        let mut work = Cutting::new(k, coordinates, None);
+        work.dissect(interior.to_vec());
+        return work.out;
     }
     let at = |dofs: &Vec<u32>| coordinates.map(|x| x[dofs[0] as usize]);
     let at: Option<Vec<[f64; 3]>> = nodes.members.iter().map(at).collect();

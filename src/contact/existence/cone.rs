@@ -5,7 +5,8 @@
 //!     Coulomb   λ_n ≥ 0,  |λ_t| ≤ min(μ λ_n, limit)          Tresca   λ_n ≥ 0,  |λ_t| ≤ g
 //! ```
 
-use crate::substructures::FrictionBound;
+use crate::feti::jump::operator::Jump;
+use crate::substructures::{FrictionBound, FrictionNode};
 
 /// A normal force and two tangential ones; in the plane the last is 0.
 pub type NodeForce = [f64; 3];
@@ -17,6 +18,19 @@ pub struct FrictionCone {
     pub rows: Vec<usize>,
     /// The law.
     pub bound: FrictionBound,
+}
+
+/// The sets of nodes on the rows that this rank owns.
+pub fn cones(nodes: &[FrictionNode], jump: &Jump) -> Vec<FrictionCone> {
+    let place = jump.places();
+    let of = |node: &FrictionNode| FrictionCone {
+        rows: std::iter::once(&node.normal)
+            .chain(&node.tangential)
+            .map(|&r| place[r])
+            .collect(),
+        bound: node.bound,
+    };
+    nodes.iter().map(of).collect()
 }
 
 /// Where the projection of a force lies.

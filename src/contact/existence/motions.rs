@@ -23,14 +23,12 @@ use crate::feti::projector::rows::KernelRows;
 use crate::substructures::Problem;
 use crate::{Error, Result};
 use base::linalg::dense::Dense;
-use base::linalg::nnls::nnls;
+use base::linalg::nnls::nnls_within;
 use base::linalg::sorted::distinct;
-use parallel::exchange::any;
 use parallel::parcels::Parcels;
 
-/// Directions of rows that differ by less in every entry are one, relative to the largest entry. Rigid motions of
-/// slender bodies have rounding of 1e-12.
-const ALIKE: f64 = 1e-10;
+/// Directions of rows are known to this part of the largest entry: motions of slender bodies have rounding of 1e-12.
+const KNOWN: f64 = 1e-10;
 
 /// Returns an error that names the bodies if the load moves some of them away for ever. With many motions the search
 /// begins at `lambda`. Collective.
@@ -52,7 +50,7 @@ pub fn check(
         let candidates: Vec<bool> = (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect();
         let rows = natural.rows_without_noise(dual.comm(), &candidates);
         let (columns, free) = directions(dual.comm(), jump, &rows, natural.r);
-        let rest = (0..).zip(nnls(&columns, &load.e, &free).1);
+        let rest = (0..).zip(nnls_within(&columns, &load.e, &free, KNOWN).1);
         let rest = rest.filter(|&(c, v)| v.abs() > load.rounding[c as usize]);
         (KernelMotion(rest.collect()), tuning.balanced)
     } else {
@@ -69,14 +67,14 @@ pub fn check(
 }
 
 /// Returns an error that names the bodies and their motion if the load moves some of them away for ever against forces
-/// of friction in `cones`. The search begins at `lambda`. Collective.
+/// of friction in `cones`. Collective.
 ///
 /// # Errors
 /// Such bodies; PETSc's own errors.
 pub fn check_cones(
     problem: &Problem,
     dual: &Dual,
-    (load, lambda): (&KernelLoad, &[f64]),
+    load: &KernelLoad,
     cones: &[FrictionCone],
     tuning: &Tuning,
 ) -> Result<()> {
@@ -85,14 +83,9 @@ pub fn check_cones(
         return Ok(());
     }
     let tolerance = tuning.nearly_balanced * load.largest;
-    let wanted = (&load.e[..], 0.1 * tolerance);
-    // Equations without a solution leave forces beside which the load is rounding.
-    let most = load.largest / tuning.springs_weak;
-    let is_far = |l: &f64| !l.is_finite() || l.abs() > most;
-    let far = any(comm, lambda.iter().any(is_far));
-    let nothing = vec![0.0; lambda.len()];
-    let begun = (wanted, if far { &nothing[..] } else { lambda });
-    let found = springs::uncarried_load(comm, natural, (jump, cones), begun, tuning);
+    let (wanted, nothing) = ((&load.e[..], 0.1 * tolerance), vec![0.0; jump.n_owned]);
+    let from = (wanted, &nothing[..]);
+    let found = springs::uncarried_load(comm, natural, (jump, cones), from, tuning);
     match found {
         Some(away) if away.largest() > tolerance => {
             let seen = as_seen(dual, &away, cones);
@@ -225,16 +218,13 @@ fn directions(
     let all = sent.gather_all(comm);
     let all = all.iter().flat_map(Parcels::iter);
     let mut all = distinct(all.map(|(free, entries)| (free, entries.len(), entries)));
-    // Rounding may have left several directions where there is one, and least squares would take their difference for
-    // another one. Two grids: what the edge of a cell divides lies in one cell of the other.
-    for shift in [0.0, 0.5] {
-        let cell = |&[c, v]: &[u64; 2]| (c, (f64::from_bits(v) / ALIKE + shift).round() as i64);
-        let mut known = HashSet::new();
-        all.retain(|(free, _, entries)| {
-            let cells: Vec<(u64, i64)> = entries.iter().map(cell).collect();
-            known.insert((*free, cells))
-        });
-    }
+    // Of directions that may be one, most are left out here. The edge of a cell may divide them: least squares sees to
+    // those.
+    let cell = |&[c, v]: &[u64; 2]| (c, (f64::from_bits(v) / KNOWN).round() as i64);
+    let mut seen = HashSet::new();
+    all.retain(|(free, _, entries)| {
+        seen.insert((*free, entries.iter().map(cell).collect::<Vec<_>>()))
+    });
     let mut columns = Dense::zeros(r, all.len());
     for (k, (_, _, entries)) in all.iter().enumerate() {
         for &[c, v] in *entries {

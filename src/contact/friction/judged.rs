@@ -2,7 +2,6 @@
 
 use super::node::{self, Node};
 use super::tuning::FrictionTuning;
-use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::substructures::FrictionNode;
 use crate::Result;
@@ -18,23 +17,13 @@ pub fn nodes_at(
     let dual = method.dual();
     let jump = &dual.stiffness.jump;
     let compliance = dual.stiffness.compliance_of_rows(&method.problem)?;
-    let place = places(jump);
+    let place = jump.places();
     let at = (lambda, active);
     let node = |given: &FrictionNode| {
         let beside = jump.rows_beside(place[given.normal]);
         Node::new(given, |r| place[r], beside, at, &compliance, tuning)
     };
     Ok(method.problem.friction.iter().map(node).collect())
-}
-
-/// The owned row of each row that this rank provides.
-fn places(jump: &Jump) -> Vec<usize> {
-    let rows = jump.rows_between_bodies();
-    let mut place = vec![0; rows.len()];
-    for i in rows {
-        place[jump.given(i)] = i;
-    }
-    place
 }
 
 /// The largest distance of a solution from the law of friction, as a force; slips say nothing up to the length

@@ -68,8 +68,7 @@ pub struct FrictionLagrangian<'a> {
     /// The states of the rows at the last minimum, and the number of minima with these states.
     kinds: Vec<u8>,
     same: usize,
-    /// Minima so far, and Newton steps of this minimisation.
-    minima: usize,
+    /// Newton steps of this minimisation.
     inner: usize,
     /// Newton steps in a row for which rows had to be put back.
     pub(super) slides: usize,
@@ -142,7 +141,6 @@ impl<'a> FrictionLagrangian<'a> {
             last: None,
             kinds: vec![0; n],
             same: 0,
-            minima: 0,
             inner: 0,
             slides: 0,
             trial: None,
@@ -232,10 +230,6 @@ impl<'a> FrictionLagrangian<'a> {
             return Ok((step, Proposal::GoOn));
         }
         self.inner = 0;
-        self.minima += 1;
-        if self.minima >= tuning.friction.doubted && self.minima.is_power_of_two() {
-            self.is_carried()?;
-        }
         let moved = self.follow_forces(&pull);
         let same = !any(comm, kinds != self.kinds);
         self.same = if same { self.same + 1 } else { 0 };
@@ -346,6 +340,11 @@ impl<'a> FrictionLagrangian<'a> {
 }
 
 impl Strategy<DualCourse> for FrictionLagrangian<'_> {
+    /// Where friction cannot hold a body, φ has no minimum.
+    fn asks_first(&self) -> bool {
+        true
+    }
+
     fn state(&self) -> &State {
         match &self.trial {
             Some(trial) => trial.state(),

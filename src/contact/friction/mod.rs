@@ -21,7 +21,7 @@ pub(super) mod tuning;
 
 use super::active_set::{ActiveSet, ActiveSetChange};
 use super::course::DualCourse;
-use super::existence::{Existence, FrictionCone};
+use super::existence::Existence;
 use super::modes::{CompliantRows, TurnedRows};
 use super::settings::{ContactSettings, ContactType};
 use super::state::{State, Step};
@@ -33,7 +33,6 @@ use crate::Result;
 use base::ErrorKind;
 pub use judged::{error, nodes_at};
 pub use lagrangian::FrictionLagrangian;
-use node::Node;
 use nodes::{Changes, Nodes};
 use parallel::exchange::{any, max_all};
 pub use recovered::recovered;
@@ -45,20 +44,13 @@ pub fn is_asked_for(method: &LinearMethod) -> bool {
     soft || any(method.session.comm(), !method.problem.friction.is_empty())
 }
 
-/// Whether forces of friction in the cones of `nodes` can balance the load; the search begins at `lambda`. Collective.
+/// Whether forces of friction within their bounds can balance the load. Collective.
 ///
 /// # Errors
 /// Bodies that slide, tip or fly away for ever.
-fn carried(
-    method: &LinearMethod,
-    settings: &ContactSettings,
-    loads: &Loads,
-    lambda: &[f64],
-    nodes: &[Node],
-) -> Result<()> {
+fn carried(method: &LinearMethod, settings: &ContactSettings, loads: &Loads) -> Result<()> {
     let dual = method.dual();
-    let cones: Vec<FrictionCone> = nodes.iter().map(Node::cone).collect();
-    Existence::new(method, &dual, settings).in_cones(&loads.kernel, lambda, &cones)
+    Existence::new(method, &dual, settings).in_cones(&loads.kernel)
 }
 
 /// The strategy.
@@ -182,8 +174,7 @@ impl<'a> Friction<'a> {
     /// # Errors
     /// Bodies that slide, tip or fly away for ever.
     fn carried(&self) -> Result<()> {
-        let (lambda, nodes) = (&self.inner.state.lambda, &self.nodes.list);
-        carried(self.method, self.settings, &self.loads, lambda, nodes)
+        carried(self.method, self.settings, &self.loads)
     }
 
     /// Whether the step has numbers for all rows: equations without digits may have none. Collective.

@@ -9,7 +9,6 @@
 //! a spring, so that rows which depend on each other do no harm, and a row that has to be put back to hold a body is a
 //! spring from where the body is. φ falls along each step, because the springs are symmetric and semidefinite.
 
-use super::carried;
 use super::lagrangian::FrictionLagrangian;
 use super::node::NodeState;
 use super::nodes::Nodes;
@@ -176,18 +175,15 @@ impl FrictionLagrangian<'_> {
                 None => -self.compliance[i],
             };
             if !restored && self.slides > self.settings.tuning.friction.slides {
-                // Which body slides away, and its motion: that of the load beside all given forces of friction, or one
-                // that no forces of friction balance.
+                // Which body slides away, and its motion: that of the load beside all given forces of friction. That
+                // some forces of friction balance the load was asked before.
                 let score = |i: usize| match self.law[i].is_friction() {
                     true => f64::NEG_INFINITY,
                     false => score(i),
                 };
                 let mut held = active.clone();
                 let loads = (&kernel, &self.loads.kernel);
-                if let Err(error) = self.repairs.sliding(&dual, &mut held, &score, loads) {
-                    self.is_carried()?;
-                    return Err(error);
-                }
+                self.repairs.sliding(&dual, &mut held, &score, loads)?;
             }
             let free = active.clone();
             self.repairs.hold(&dual, &mut active, &score, &kernel)?;
@@ -219,21 +215,6 @@ impl FrictionLagrangian<'_> {
         drop(dual);
         self.at.loads.jumps = Some(jumps);
         Ok(restored)
-    }
-
-    /// Whether forces of friction can balance the load. Collective.
-    ///
-    /// # Errors
-    /// Bodies that slide, tip or fly away for ever.
-    pub(super) fn is_carried(&self) -> Result<()> {
-        let lambda = self.at.lambda.to_vec()?;
-        carried(
-            self.method,
-            self.settings,
-            &self.loads,
-            &lambda,
-            &self.nodes,
-        )
     }
 
     /// How much softer than others the spring across each slip is, by its row.

@@ -8,7 +8,6 @@
 //! is across d. It is a spring of compliance |w|/g, by which the force follows the direction of the slip.
 
 use super::tuning::FrictionTuning;
-use crate::contact::existence::FrictionCone;
 use crate::feti::jump::turn::Turn;
 use crate::substructures::{FrictionBound, FrictionNode};
 
@@ -160,15 +159,6 @@ impl Node {
     /// The bound g that follows from these multipliers.
     pub fn bound(&self, lambda: &[f64]) -> f64 {
         self.bound.at(lambda[self.normal])
-    }
-
-    /// The forces that it can exert.
-    pub fn cone(&self) -> FrictionCone {
-        let rows = std::iter::once(self.normal).chain(self.tangential.iter().copied());
-        FrictionCone {
-            rows: rows.collect(),
-            bound: self.bound,
-        }
     }
 
     /// The largest bound that any multipliers give; ∞ for Coulomb's law without a limit.

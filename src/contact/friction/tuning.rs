@@ -72,9 +72,6 @@ pub struct FrictionTuning {
     pub longer: f64,
     /// A body may slide away if nothing but friction beyond its bound has held it after this many steps in a row.
     pub slides: usize,
-    /// After so many minima of the augmented Lagrangian, and after each power of two, the question is whether friction
-    /// can hold the bodies at all.
-    pub doubted: usize,
 }
 
 impl FrictionTuning {
@@ -108,6 +105,5 @@ impl FrictionTuning {
         tips: 2,
         longer: 100.0,
         slides: 8,
-        doubted: 16,
     };
 }

@@ -207,6 +207,16 @@ impl Jump {
         self.order[i - self.n_owned_local]
     }
 
+    /// The owned row of each row that this rank provides.
+    pub fn places(&self) -> Vec<usize> {
+        let rows = self.rows_between_bodies();
+        let mut place = vec![0; rows.len()];
+        for i in rows {
+            place[self.given(i)] = i;
+        }
+        place
+    }
+
     /// Values of `owned` on the owned rows of B_gl, in the order in which this rank provides them.
     pub fn in_given_order<T: Clone + Default>(&self, owned: &[T]) -> Vec<T> {
         let mut out = vec![T::default(); self.order.len()];

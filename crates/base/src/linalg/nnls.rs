@@ -2,16 +2,20 @@
 
 use super::dense::Dense;
 
-/// Gradients below this, relative to ‖b‖ and the column, are zero.
-const TOLERANCE: f64 = 1e-12;
-
-/// Columns are dependent if a pivot is below this, relative to the largest one.
-const DEPENDENT: f64 = 1e-12;
+/// Gradients below this, relative to ‖b‖ and the column, are zero; and columns are dependent if a pivot is below this,
+/// relative to the largest one.
+const ROUNDING: f64 = 1e-12;
 
 /// Minimises ‖A x − b‖₂ with x_j ≥ 0 where `free[j]` is false. Returns x and the residual b − A x. The residual is a
 /// certificate in the sense of Farkas' lemma: it is orthogonal to the free columns, has no positive product with the
 /// others, and is zero if and only if b is in the cone.
 pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
+    nnls_within(a, b, free, ROUNDING)
+}
+
+/// [`nnls`] for columns that are known to `noise`, relative to the largest one: what less than this tells apart is one
+/// direction. The x of two directions that differ by δ is as large as ‖b‖/δ, and rounding of the residual as ε‖b‖/δ.
+pub fn nnls_within(a: &Dense, b: &[f64], free: &[bool], noise: f64) -> (Vec<f64>, Vec<f64>) {
     let (m, n) = (a.rows, a.cols);
     let mut passive: Vec<usize> = (0..n).filter(|&j| free[j]).collect();
     let mut x = vec![0.0; n];
@@ -26,7 +30,7 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
     };
     let size = norm(b);
     if !passive.is_empty() {
-        let z = least_squares(a, b, &passive);
+        let z = least_squares(a, b, &passive, noise);
         passive.iter().zip(&z).for_each(|(&j, &z)| x[j] = z);
     }
     // Each round lowers the residual, hence no passive set comes back; the bound on the rounds guards against rounding.
@@ -35,12 +39,12 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
         let gain = |j: usize| dot(a.col(j), &r) / norm(a.col(j)).max(f64::MIN_POSITIVE);
         let open = (0..n).filter(|j| !passive.contains(j));
         let best = open.max_by(|&i, &j| gain(i).total_cmp(&gain(j)));
-        let Some(j) = best.filter(|&j| gain(j) > TOLERANCE * size) else {
+        let Some(j) = best.filter(|&j| gain(j) > noise * size) else {
             break;
         };
         passive.push(j);
         loop {
-            let z = least_squares(a, b, &passive);
+            let z = least_squares(a, b, &passive, noise);
             // The part of the way to z on which column j stays in the cone.
             let way = |&(&j, &z): &(&usize, &f64)| {
                 if !free[j] && z <= 0.0 {
@@ -80,7 +84,7 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
 
 /// Minimises ‖A z − b‖ over the given columns; returns the shortest minimiser where they are dependent. A Π = Q [R₁; 0]
 /// with pivoted columns, then R₁ᵀ = Q₂ R₂ and z = Π Q₂ R₂⁻ᵀ Q₁ᵀ b. This takes a tenth of the time of singular values.
-fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
+fn least_squares(a: &Dense, b: &[f64], columns: &[usize], noise: f64) -> Vec<f64> {
     let part = faer::Mat::from_fn(a.rows, columns.len(), |i, k| a.get(i, columns[k]));
     let pivoted = part.col_piv_qr();
     let (q, r) = (pivoted.compute_thin_Q(), pivoted.thin_R());
@@ -90,7 +94,7 @@ fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
     } else {
         r[(0, 0)].abs()
     };
-    let rank = diagonal.take_while(|&i| r[(i, i)].abs() > DEPENDENT * largest);
+    let rank = diagonal.take_while(|&i| r[(i, i)].abs() > noise * largest);
     let rank = rank.count();
     let across = faer::Mat::from_fn(
         columns.len(),

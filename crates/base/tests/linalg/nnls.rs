@@ -41,6 +41,26 @@ fn dependent_columns_do_no_harm() {
     );
 }
 
+/// Two directions that differ by rounding are one: their difference carries nothing, and makes no x of 1e11 whose terms
+/// leave 1e-5 of the residual to rounding.
+#[test]
+fn directions_that_differ_by_noise_are_one() {
+    let noise = 1e-10;
+    for delta in [0.0, 1e-13, 1e-12, 3e-12, 1e-11, 5e-11] {
+        let a = dense(&[&[1.0, 1.0, 0.0], &[0.3, 0.3 + delta, 0.0], &[0.0, 0.0, 1.0]]);
+        let (x, r) = nnls_within(&a, &[1.0, 0.4, 2.0], &[true, true, false], noise);
+        assert!(x.iter().all(|x| x.abs() < 3.0), "{delta}: {x:?}");
+        // The distance of (1, 0.4) from the line along (1, 0.3).
+        let far = 0.1 / 1.09f64.sqrt();
+        assert!(
+            (r[0].hypot(r[1]) - far).abs() < 10.0 * noise,
+            "{delta}: {r:?}"
+        );
+        let (_, r) = nnls_within(&a, &[1.0, 0.3, 2.0], &[true, true, false], noise);
+        assert!(r.iter().all(|r| r.abs() < 10.0 * noise), "{delta}: {r:?}");
+    }
+}
+
 #[test]
 fn the_shortest_minimiser_is_that_of_singular_values() {
     // Full rank, more rows than columns, fewer, and dependent columns.
@@ -60,7 +80,7 @@ fn the_shortest_minimiser_is_that_of_singular_values() {
         let a = Dense::from_fn(m, n, entry);
         let b: Vec<f64> = (0..m).map(|i| value(i, 40)).collect();
         let columns: Vec<usize> = (0..n).collect();
-        let ours = least_squares(&a, &b, &columns);
+        let ours = least_squares(&a, &b, &columns, ROUNDING);
         let svd = faer::Mat::from_fn(m, n, entry).thin_svd();
         let svd = svd.expect("the iteration ends");
         let sigma = svd.S().column_vector();
