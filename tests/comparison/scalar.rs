@@ -92,8 +92,15 @@ fn all_methods_agree_on_tied_bodies() {
     // Tied bodies as one: the domain that the others see.
     let merged = &report.rows[2].run;
     assert_eq!(merged.layout, "merged");
-    assert!(merged.options.contains("-fetifeti_merge ties"), "{}", merged.options);
-    assert!(merged.iterations < report.rows[0].run.iterations, "{merged:?}");
+    assert!(
+        merged.options.contains("-fetifeti_merge ties"),
+        "{}",
+        merged.options
+    );
+    assert!(
+        merged.iterations < report.rows[0].run.iterations,
+        "{merged:?}"
+    );
     for parts in [6, 2] {
         // With the same primal space and scaling, the spectra of BDDC and FETI-DP agree except for eigenvalues 1.
         let both = ["bddc", "fetidp"].map(|m| row(&report, m, Some(parts)));

@@ -13,7 +13,8 @@ use rustc_hash::FxHashMap;
 use super::groups::Groups;
 use super::interface::TiedDofs;
 use crate::substructures::{Entity, EntityKind, Problem, Subdomain};
-use parallel::exchange::{exchange_by_rank, max_all};
+use base::linalg::apart::complete;
+use parallel::exchange::{exchange_by_rank, gather_all, max_all};
 use parallel::parcels::Parcels;
 
 /// Keys of what merged bodies share begin here; those of what one body has are below.
@@ -27,6 +28,14 @@ pub struct SharedDofs {
     lists: Vec<bool>,
     /// The kind of a face between merged bodies.
     averaged: EntityKind,
+}
+
+/// A node that two subdomains have.
+#[derive(Default)]
+struct CommonNode {
+    at: [f64; 3],
+    vertex: bool,
+    dofs: Vec<u64>,
 }
 
 impl SharedDofs {
@@ -87,7 +96,61 @@ impl SharedDofs {
         shared.of = entries
             .map(|([dof, vertex], sharers)| (dof, (vertex != 0, sharers.to_vec())))
             .collect();
+        shared.add_vertices(comm, given, groups, dofs);
         shared
+    }
+
+    /// Makes more nodes vertices until each two subdomains with a common face hold each other. Collective.
+    fn add_vertices(
+        &mut self,
+        comm: &SimpleCommunicator,
+        given: &Problem,
+        groups: &Groups,
+        dofs: &TiedDofs,
+    ) {
+        let merged = given.local.iter().filter(|s| groups.is_merged(s.body));
+        let more: Vec<u64> = merged.flat_map(|sub| self.missing(sub, dofs)).collect();
+        for dof in gather_all(comm, &more).into_iter().flatten() {
+            if let Some((vertex, _)) = self.of.get_mut(&dof) {
+                *vertex = true;
+            }
+        }
+    }
+
+    /// The dofs that are to be vertices, too, for a subdomain and those after it that share a face with it to hold each
+    /// other.
+    fn missing(&self, sub: &Subdomain, dofs: &TiedDofs) -> Vec<u64> {
+        let at = sub.coordinates.as_deref().unwrap_or_default();
+        // By neighbour: the nodes in common, each with its dofs, and whether there is a face.
+        let mut common: BTreeMap<u32, (BTreeMap<[u64; 3], CommonNode>, bool)> = BTreeMap::new();
+        for (&dof, &x) in sub.dofs.iter().zip(at) {
+            let number = dofs.number(dof);
+            let found = self.of.get(&number);
+            let Some((vertex, sharers)) = found.filter(|_| self.concerns(sub, dof, dofs)) else {
+                continue;
+            };
+            for &other in sharers.iter().filter(|&&s| s as usize > sub.index) {
+                let (nodes, face) = common.entry(other).or_default();
+                *face |= sharers.len() == 2;
+                let node = nodes.entry(x.map(f64::to_bits)).or_default();
+                node.at = x;
+                node.vertex |= vertex;
+                node.dofs.push(number);
+            }
+        }
+        let mut out = Vec::new();
+        for (nodes, face) in common.into_values() {
+            let nodes: Vec<CommonNode> = nodes.into_values().collect();
+            let mut chosen: Vec<usize> = (0..nodes.len()).filter(|&k| nodes[k].vertex).collect();
+            let known = chosen.len();
+            // One edge around may be all they share; they hold each other through others.
+            if face || chosen.is_empty() {
+                complete(nodes.len(), |k| nodes[k].at, face, &mut chosen);
+            }
+            let more = chosen[known..].iter();
+            out.extend(more.flat_map(|&k| nodes[k].dofs.iter().copied()));
+        }
+        out
     }
 
     /// Whether the edges and faces of a dof of a subdomain are to be found here.

@@ -1,5 +1,6 @@
 //! Small linear algebra that all crates use: sparse matrices, dense kernels, vectors in space. No MPI, no PETSc.
 
+pub mod apart;
 pub mod csr;
 pub mod dense;
 pub mod lists;
