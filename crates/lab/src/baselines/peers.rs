@@ -14,6 +14,39 @@ const CG: OptionSet = OptionSet {
     options: &[("ksp_type", "cg"), ("ksp_norm_type", "unpreconditioned")],
 };
 
+/// The options of PCBDDC, also of the one inside KSPFETIDP.
+pub(super) const BDDC: [OptionSet; 5] = [
+    OptionSet {
+        when: When::Always,
+        // Follows jumps of the coefficient; PETSc's default scales by multiplicity.
+        options: &[("pc_is_use_stiffness_scaling", "true")],
+    },
+    OptionSet {
+        when: When::Space,
+        options: &[("pc_bddc_use_faces", "true")],
+    },
+    OptionSet {
+        when: When::Elastic,
+        // Parts have too few vertices to have no kernel: PETSc picks more by their positions.
+        options: &[("pc_bddc_corner_selection", "true")],
+    },
+    OptionSet {
+        when: When::ElasticSpace,
+        // Averages of all rigid motions, and those over edges, take fewer iterations, and more than that in the coarse
+        // problem.
+        options: &[
+            ("pc_bddc_use_nnsp", "false"),
+            ("pc_bddc_use_edges", "false"),
+        ],
+    },
+    OptionSet {
+        when: When::Rescue,
+        // A floating part without a vertex gets a singular local problem unless averages become unknowns, which costs
+        // the other problems time and memory: sixteen times the seconds on large faces.
+        options: &[("pc_bddc_use_change_of_basis", "true")],
+    },
+];
+
 /// BoomerAMG with sparse interpolation.
 const HMIS: [(&str, &str); 4] = [
     ("pc_hypre_boomeramg_coarsen_type", "HMIS"),
@@ -30,40 +63,12 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Nothing,
         format: MatrixFormat::Unassembled,
         krylov: "",
-        local: &["pc_bddc_dirichlet_", "pc_bddc_neumann_"],
+        bddc: Some(""),
         sets: &[
             CG,
             OptionSet {
                 when: When::Always,
-                options: &[
-                    ("pc_type", "bddc"),
-                    // Follows jumps of the coefficient; PETSc's default scales by multiplicity.
-                    ("pc_is_use_stiffness_scaling", "true"),
-                ],
-            },
-            OptionSet {
-                when: When::Space,
-                options: &[("pc_bddc_use_faces", "true")],
-            },
-            OptionSet {
-                when: When::Elastic,
-                // Parts have too few vertices to have no kernel: PETSc picks more by their positions.
-                options: &[("pc_bddc_corner_selection", "true")],
-            },
-            OptionSet {
-                when: When::ElasticSpace,
-                // Averages of all rigid motions, and those over edges, take fewer iterations, and more than that in
-                // the coarse problem.
-                options: &[
-                    ("pc_bddc_use_nnsp", "false"),
-                    ("pc_bddc_use_edges", "false"),
-                ],
-            },
-            OptionSet {
-                when: When::Rescue,
-                // A floating part without a vertex gets a singular local problem unless averages become unknowns,
-                // which costs the other problems time and memory: sixteen times the seconds on large faces.
-                options: &[("pc_bddc_use_change_of_basis", "true")],
+                options: &[("pc_type", "bddc")],
             },
         ],
         near: Near::Motions,
@@ -76,41 +81,16 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Nothing,
         format: MatrixFormat::Unassembled,
         krylov: "fetidp_",
-        local: &[
-            "fetidp_bddc_pc_bddc_dirichlet_",
-            "fetidp_bddc_pc_bddc_neumann_",
-        ],
-        sets: &[
-            OptionSet {
-                when: When::Always,
-                options: &[
-                    ("ksp_type", "fetidp"),
-                    ("ksp_fetidp_fullyredundant", "true"),
-                    ("fetidp_ksp_type", "cg"),
-                    ("fetidp_ksp_norm_type", "unpreconditioned"),
-                    ("fetidp_bddc_pc_is_use_stiffness_scaling", "true"),
-                ],
-            },
-            OptionSet {
-                when: When::Space,
-                options: &[("fetidp_bddc_pc_bddc_use_faces", "true")],
-            },
-            OptionSet {
-                when: When::Elastic,
-                options: &[("fetidp_bddc_pc_bddc_corner_selection", "true")],
-            },
-            OptionSet {
-                when: When::ElasticSpace,
-                options: &[
-                    ("fetidp_bddc_pc_bddc_use_nnsp", "false"),
-                    ("fetidp_bddc_pc_bddc_use_edges", "false"),
-                ],
-            },
-            OptionSet {
-                when: When::Rescue,
-                options: &[("fetidp_bddc_pc_bddc_use_change_of_basis", "true")],
-            },
-        ],
+        bddc: Some("fetidp_bddc_"),
+        sets: &[OptionSet {
+            when: When::Always,
+            options: &[
+                ("ksp_type", "fetidp"),
+                ("ksp_fetidp_fullyredundant", "true"),
+                ("fetidp_ksp_type", "cg"),
+                ("fetidp_ksp_norm_type", "unpreconditioned"),
+            ],
+        }],
         near: Near::Motions,
         lag: 0.0,
     },
@@ -121,7 +101,7 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Pc("hpddm"),
         format: MatrixFormat::Unassembled,
         krylov: "",
-        local: &[],
+        bddc: None,
         sets: &[
             CG,
             OptionSet {
@@ -148,7 +128,7 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Nothing,
         format: MatrixFormat::Assembled,
         krylov: "",
-        local: &[],
+        bddc: None,
         sets: &[
             CG,
             OptionSet {
@@ -179,7 +159,7 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Pc("hypre"),
         format: MatrixFormat::Assembled,
         krylov: "",
-        local: &[],
+        bddc: None,
         sets: &[
             CG,
             OptionSet {
@@ -212,7 +192,7 @@ pub const BASELINES: [Baseline; 6] = [
         needs: Needs::Package("mumps"),
         format: MatrixFormat::Assembled,
         krylov: "",
-        local: &[],
+        bddc: None,
         sets: &[OptionSet {
             when: When::Always,
             options: &[

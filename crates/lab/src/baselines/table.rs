@@ -4,7 +4,7 @@
 //! command line of `compare`: `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_levels 1`, `-fetidp_fetidp_ksp_monitor`.
 //! Ours keeps `-fetifeti_`.
 
-use super::peers::BASELINES;
+use super::peers::{BASELINES, BDDC};
 use crate::assembled::near::Near;
 use crate::assembled::system::MatrixFormat;
 use base::{Error, Result};
@@ -24,8 +24,9 @@ pub struct Baseline {
     pub format: MatrixFormat,
     /// The prefix of the Krylov method's options behind the row's own prefix: KSPFETIDP iterates in an inner solver.
     pub krylov: &'static str,
-    /// The prefixes of its solvers of subdomains, which are given the best package that PETSc has.
-    pub local: &'static [&'static str],
+    /// The prefix of PCBDDC's options behind the row's own prefix, where it is or has one; those in [`BDDC`] hold, and
+    /// its solvers of subdomains and of the coarse problem are given the best package that PETSc has.
+    pub bddc: Option<&'static str>,
     /// Options that hold unless the user says otherwise; later ones override earlier ones.
     pub sets: &'static [OptionSet],
     /// The rigid motions that the solver is given.
@@ -101,14 +102,15 @@ impl Baseline {
 
     /// Whether it has options for a second try.
     pub fn has_rescue(&self) -> bool {
-        self.sets.iter().any(|set| set.when == When::Rescue)
+        self.bddc.is_some()
     }
 
     /// The options of the second try, as the user of `compare` would write them.
     pub fn rescue_options(&self) -> String {
-        let sets = self.sets.iter().filter(|set| set.when == When::Rescue);
+        let sets = BDDC.iter().filter(|set| set.when == When::Rescue);
         let all = sets.flat_map(|set| set.options);
-        let written = all.map(|(name, value)| format!("-{}{name} {value}", self.prefix()));
+        let prefix = self.prefix() + self.bddc.unwrap_or_default();
+        let written = all.map(|(name, value)| format!("-{prefix}{name} {value}"));
         written.collect::<Vec<_>>().join(" ")
     }
 
@@ -133,20 +135,31 @@ impl Baseline {
             Some(known) => known.1 = value.to_string(),
             None => all.push((name, value.to_string())),
         };
-        let package = case.local.into_iter().flat_map(|package| {
-            let both = |at: &'static str| {
-                [
-                    (format!("{at}pc_type"), "cholesky"),
-                    (format!("{at}pc_factor_mat_solver_type"), package),
-                ]
-            };
-            self.local.iter().copied().flat_map(both)
+        let packages = self.bddc.into_iter().flat_map(|bddc| {
+            let local = ["dirichlet", "neumann"].map(|part| (part, case.local));
+            // PETSc's own factor of the coarse problem takes up to ten times as long.
+            let parts = local.into_iter().chain([("coarse", case.coarse)]);
+            parts.flat_map(move |(part, package)| {
+                package.into_iter().flat_map(move |package| {
+                    let at = format!("{bddc}pc_bddc_{part}_");
+                    [
+                        (format!("{at}pc_type"), "cholesky"),
+                        (format!("{at}pc_factor_mat_solver_type"), package),
+                    ]
+                })
+            })
+        });
+        let primal = self.bddc.into_iter().flat_map(|bddc| {
+            let sets = BDDC.iter().filter(|set| set.when.holds(case));
+            let listed = sets.flat_map(|set| set.options);
+            listed.map(move |(name, value)| (format!("{bddc}{name}"), *value))
         });
         let sets = self.sets.iter().filter(|set| set.when.holds(case));
         let listed = sets.flat_map(|set| set.options);
         let listed = listed.map(|(name, value)| (name.to_string(), *value));
         let (first, rest): (Vec<_>, Vec<_>) = listed.partition(|(name, _)| name == "ksp_type");
-        for (name, value) in first.into_iter().chain(rest).chain(package) {
+        let all_sets = first.into_iter().chain(rest).chain(primal);
+        for (name, value) in all_sets.chain(packages) {
             set(name, value);
         }
         all
@@ -214,6 +227,9 @@ impl Baseline {
 /// Packages for the subdomains of domain decompositions, the best first.
 const LOCAL: [&str; 2] = ["cholmod", "mumps"];
 
+/// The package for coarse problems.
+const COARSE: &str = "mumps";
+
 /// The properties of a run that its options depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BaselineCase {
@@ -229,6 +245,8 @@ pub struct BaselineCase {
     pub rescue: bool,
     /// The package for subdomains; `None`: PETSc's own.
     pub local: Option<&'static str>,
+    /// The package for coarse problems; `None`: PETSc's own.
+    pub coarse: Option<&'static str>,
 }
 
 impl BaselineCase {
@@ -250,6 +268,7 @@ impl BaselineCase {
             contact: scene.has_contact(),
             rescue: false,
             local,
+            coarse: petsc::has_cholesky(session, COARSE)?.then_some(COARSE),
         })
     }
 }

@@ -31,6 +31,7 @@ fn case() -> BaselineCase {
         contact: false,
         rescue: false,
         local: Some("cholmod"),
+        coarse: Some("mumps"),
     }
 }
 
@@ -74,6 +75,7 @@ fn options_follow_the_kind_of_problem() {
                 contact: bit(2),
                 rescue: bit(3),
                 local: None,
+                coarse: None,
             };
             let all = peer.options(&case);
             for (name, _) in &all {
@@ -94,6 +96,10 @@ fn subdomains_get_the_package_that_there_is() {
     };
     assert_eq!(value("bddc", &none, option), None);
     assert_eq!(value("gamg", &case(), option), None);
+    for (name, prefix) in [("bddc", ""), ("fetidp", "fetidp_bddc_")] {
+        let option = format!("{prefix}pc_bddc_coarse_pc_factor_mat_solver_type");
+        assert_eq!(value(name, &case(), &option).as_deref(), Some("mumps"));
+    }
 }
 
 /// Options of the user stand in place of those that the program takes, and behind them.
@@ -131,7 +137,7 @@ fn what_a_build_of_petsc_lacks_is_said() {
                 needs,
                 format: MatrixFormat::Assembled,
                 krylov: "",
-                local: &[],
+                bddc: None,
                 sets: &[],
                 near: Near::None,
                 lag: 0.0,
