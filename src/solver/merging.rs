@@ -3,7 +3,7 @@
 use super::FetiFeti;
 use crate::feti::settings::{MergeKind, MethodSettings};
 use crate::feti::FreeMotion;
-use crate::substructures::merged::Merged;
+use crate::substructures::merged::{Copies, Merged};
 use crate::substructures::{EntityKind, Problem};
 use petsc::Session;
 
@@ -13,17 +13,14 @@ pub(super) fn merged(
     problem: Problem,
     settings: &MethodSettings,
 ) -> (Problem, Option<Merged>) {
-    let merges = match settings.merge {
-        MergeKind::None => false,
-        MergeKind::Ties => true,
-        MergeKind::Auto => problem.ragged,
+    let copies = match settings.merge {
+        MergeKind::Ties => Copies::Merge,
+        MergeKind::Auto if problem.ragged => Copies::Stay,
+        MergeKind::None | MergeKind::Auto => return (problem, None),
     };
-    if !merges {
-        return (problem, None);
-    }
     let edges = settings.primal.takes(EntityKind::Edge);
     let averaged = [EntityKind::Face, EntityKind::Edge][usize::from(edges)];
-    Merged::new(session.comm(), problem, averaged)
+    Merged::new(session.comm(), problem, averaged, copies)
 }
 
 /// The names of the groups of several bodies that the method will have as one. Collective.

@@ -4,7 +4,9 @@ use crate::support::checks::{identities, near};
 use crate::support::copies::{Copies, Kind};
 use crate::support::mpi::Scratch;
 use crate::support::session::with_session;
-use fetifeti::settings::{Adaptive, MethodSettings, Operators, PcType, Precision, Scaling};
+use fetifeti::settings::{
+    Adaptive, MergeKind, MethodSettings, Operators, PcType, Precision, Scaling,
+};
 use fetifeti::{FetiFeti, Problem};
 use scene::Scene;
 
@@ -176,4 +178,15 @@ fn contact_between_copies_is_the_same_with_and_without_sharing() {
     let alone = solve(unplaced(problem), settings, "contact alone");
     assert_eq!(alone.kinds, 16);
     same(&shared, &alone, 1e-8, "contact");
+}
+
+/// Merged copies differ in their interfaces. Whoever asks for that gets it.
+#[test]
+fn copies_are_merged_on_demand_alone() {
+    let problem = problem("copies-merged", &TIED);
+    let settings = MethodSettings::default().rtol(1e-10);
+    let rows = solve(problem.clone(), settings.clone(), "rows");
+    let merged = solve(problem, settings.merge(MergeKind::Ties), "merged");
+    assert!(rows.kinds == 4 && merged.kinds > 4, "{}", merged.kinds);
+    assert!(near(rows.energy, merged.energy, 1e-10));
 }

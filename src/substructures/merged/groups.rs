@@ -1,13 +1,15 @@
 //! Which bodies are tied for good.
 
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use mpi::topology::SimpleCommunicator;
 
 use super::interface::TiedDofs;
 use crate::substructures::{Law, Problem, Row};
+use base::linalg::sorted::distinct;
 use base::linalg::union_find::UnionFind;
-use parallel::exchange::{gather_all, max_all};
+use parallel::exchange::{gather_all, max_all, sum_all};
 
 /// The group of each body.
 pub struct Groups {
@@ -17,12 +19,26 @@ pub struct Groups {
     pub members: Vec<Vec<usize>>,
 }
 
+/// Numbers of copies that differ by no more, relatively, are equal to rounding.
+const EQUAL: f64 = 1e-10;
+
+/// Whether bodies that are copies of each other are merged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Copies {
+    /// They stay bodies.
+    Stay,
+    /// As all others.
+    Merge,
+}
+
 /// A row between two bodies, as ranks tell each other: the bodies, and whether it is a tie that can be merged.
 type Joined = [u64; 3];
 
 impl Groups {
-    /// `None` where no bodies are tied for good. Collective.
-    pub fn new(comm: &SimpleCommunicator, problem: &Problem) -> Option<Groups> {
+    /// `None` where no bodies are tied for good. Where `copies` stay, a body that is another one once more is not merged:
+    /// its subdomains would have other interfaces than those of its copies, and share their factors no longer.
+    /// Collective.
+    pub fn new(comm: &SimpleCommunicator, problem: &Problem, copies: Copies) -> Option<Groups> {
         let bodies = BodiesOfDofs::new(comm, problem);
         let mut mine: BTreeSet<Joined> = BTreeSet::new();
         for row in &problem.rows {
@@ -41,7 +57,12 @@ impl Groups {
             let all = joined.entry([a, b]).or_insert(true);
             *all &= good != 0;
         }
-        let fit = fit(comm, problem);
+        let mut fit = fit(comm, problem);
+        if copies == Copies::Stay {
+            for body in repeated(comm, problem) {
+                fit[body] = None;
+            }
+        }
         let mut sets = UnionFind::new(problem.n_bodies);
         let mut any = false;
         for ([a, b], _) in joined.into_iter().filter(|(_, good)| *good) {
@@ -107,6 +128,32 @@ fn fit(comm: &SimpleCommunicator, problem: &Problem) -> Vec<Option<usize>> {
         (most == least && most > 0.0 && !weak(&b)).then_some(most as usize)
     };
     (0..n).map(of).collect()
+}
+
+/// The bodies of which there are others with as many subdomains, dofs and entries, and with the same (tr K)²/‖K‖_F²,
+/// which turns, mirrors and multiples keep. Collective.
+fn repeated(comm: &SimpleCommunicator, problem: &Problem) -> Vec<usize> {
+    let mut sums = vec![[0.0; 5]; problem.n_bodies];
+    for sub in &problem.local {
+        let rows = (0..sub.k.n()).flat_map(|i| sub.k.row(i).1);
+        let square: f64 = rows.map(|v| v * v).sum();
+        let trace: f64 = sub.k.diagonal().iter().sum();
+        let more = [1.0, sub.f.len() as f64, sub.k.nnz() as f64, trace, square];
+        let of = sums[sub.body].iter_mut();
+        of.zip(more).for_each(|(s, m)| *s += m);
+    }
+    sum_all(comm, sums.as_flattened_mut());
+    let key = |s: &[f64; 5]| [s[0], s[1], s[2], s[3] * s[3] / s[4]];
+    let keys: Vec<[f64; 4]> = sums.iter().map(key).collect();
+    let mut order: Vec<usize> = (0..problem.n_bodies).collect();
+    order.sort_by(|&a, &b| {
+        let mut pairs = keys[a].iter().zip(&keys[b]);
+        let differ = pairs.find(|(x, y)| x != y);
+        differ.map_or(Ordering::Equal, |(x, y)| x.total_cmp(y))
+    });
+    let alike = |a: [f64; 4], b: [f64; 4]| a[..3] == b[..3] && (a[3] - b[3]).abs() <= EQUAL * a[3];
+    let pairs = order.windows(2).filter(|p| alike(keys[p[0]], keys[p[1]]));
+    distinct(pairs.flatten().copied())
 }
 
 /// The body of each dof that rows name.

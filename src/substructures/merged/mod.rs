@@ -24,6 +24,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::{FrictionNode, Problem, Row, SolvedRow, Subdomain};
 use crate::{Error, Result};
+pub use groups::Copies;
 use groups::Groups;
 use interface::TiedDofs;
 
@@ -61,8 +62,9 @@ impl Merged {
         comm: &SimpleCommunicator,
         given: Problem,
         averaged: super::EntityKind,
+        copies: Copies,
     ) -> (Problem, Option<Merged>) {
-        let Some(groups) = Groups::new(comm, &given) else {
+        let Some(groups) = Groups::new(comm, &given, copies) else {
             return (given, None);
         };
         let dofs = TiedDofs::new(comm, &given, &groups);

@@ -56,7 +56,8 @@ pub struct SolveReport {
     pub bodies: usize,
     /// Bodies whose stiffness matrix is singular.
     pub floating_bodies: usize,
-    /// Bodies of the method: bodies that are merged count once.
+    /// Bodies of the method: bodies that are merged count once. 0 in reports of earlier versions.
+    #[serde(default)]
     pub groups: usize,
     /// Subdomains over all bodies.
     pub subdomains: usize,
