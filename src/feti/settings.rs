@@ -129,8 +129,8 @@ pub enum MergeKind {
     None,
     /// They are one body of the method: FETI-DP holds them together. They keep their names and forces.
     Ties,
-    /// [`Ties`](Self::Ties) for meshes in space ([`Problem::ragged`](crate::Problem::ragged)); boxes stay bodies, and so
-    /// do copies of each other, whose subdomains share factors.
+    /// [`Ties`](Self::Ties) for meshes in space ([`Problem::ragged`](crate::Problem::ragged)). Boxes stay bodies, and
+    /// so do copies of each other, whose subdomains share factors.
     Auto,
 }
 

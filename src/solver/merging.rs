@@ -69,7 +69,7 @@ impl FetiFeti {
         self.problem().rows.len() - self.method.problem.rows.len()
     }
 
-    /// The place of the row between bodies that this rank owns as number `i` ([`Solution::lambda`]) among those that it
+    /// The place of the row between bodies that this rank owns as number `i` among those that it
     /// has provided.
     pub fn given_row(&self, i: usize) -> usize {
         let k = self.dual().stiffness.jump.given(i);

@@ -35,9 +35,8 @@ pub enum Copies {
 type Joined = [u64; 3];
 
 impl Groups {
-    /// `None` where no bodies are tied for good. Where `copies` stay, a body that is another one once more is not merged:
-    /// its subdomains would have other interfaces than those of its copies, and share their factors no longer.
-    /// Collective.
+    /// `None` where no bodies are tied for good. Where `copies` stay, a body that there is once more is not merged: its
+    /// subdomains would have other interfaces than those of its copies, and share their factors no longer. Collective.
     pub fn new(comm: &SimpleCommunicator, problem: &Problem, copies: Copies) -> Option<Groups> {
         let bodies = BodiesOfDofs::new(comm, problem);
         let mut mine: BTreeSet<Joined> = BTreeSet::new();
