@@ -7,6 +7,7 @@ mod merging;
 pub use merging::groups;
 
 use std::cell::Ref;
+use std::time::Instant;
 
 use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
@@ -228,8 +229,10 @@ impl FetiFeti {
         let mut rows: Vec<SolvedRow> = rows.collect();
         drop(dual);
         if let Some(merged) = &self.merged {
+            let clock = Instant::now();
             let forces = self.method.interface_forces(&found.lambda)?;
             rows = merged.rows(self.session().comm(), &forces, rows);
+            found.recover_seconds += clock.elapsed().as_secs_f64();
         }
         Ok(Solution::new(found, rows, steps))
     }

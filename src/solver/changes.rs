@@ -33,7 +33,10 @@ impl FetiFeti {
         let Some(merged) = &mut self.merged else {
             return self.method.set_rows(rows, friction);
         };
-        let new = merged.with_rows(rows, friction)?;
+        let new = self
+            .method
+            .session
+            .agree(merged.with_rows(rows, friction))?;
         let (rows, friction) = new.of_method();
         self.method.set_rows(rows, friction)?;
         merged.take(new);
@@ -67,7 +70,7 @@ impl FetiFeti {
         let staged = setup_stage.scope()?;
         let rows = match (rows, &mut merged) {
             (Some((rows, friction)), Some(merged)) => {
-                let new = merged.with_rows(rows, friction)?;
+                let new = method.session.agree(merged.with_rows(rows, friction))?;
                 let left = new.of_method();
                 merged.take(new);
                 Some(left)

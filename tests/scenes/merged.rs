@@ -261,6 +261,40 @@ fn what_changes_reaches_merged_bodies() {
     });
 }
 
+/// Two blocks on a plate, tied to it and in contact with each other: where the three meet, the row of the contact is
+/// between dofs that the ties make one.
+#[test]
+fn contact_beside_two_ties() {
+    let block = |name: &str, x: f64, more: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\norigin = [{x}, 0.5]\nsize = [1, 1]\nelements = 4\nyoung = 1\n\
+             poisson = 0.3\n{more}\n[[tie]]\nbodies = [\"plate\", \"{name}\"]\n"
+        )
+    };
+    for friction in ["", "friction = 0.3\n"] {
+        let text = format!(
+            "physics = \"elasticity\"\n[[body]]\nname = \"plate\"\nsize = [2, 0.5]\nelements = [8, 2]\nyoung = 1\n\
+             poisson = 0.3\ndirichlet = {{ bottom = 0 }}\n{}{}[[contact]]\nbodies = [\"a\", \"c\"]\n{friction}",
+            block("a", 0.0, "traction = { left = [0.1, 0] }"),
+            block("c", 1.0, ""),
+        );
+        with_session(move |session| {
+            let scene = Scene::parse("merged.toml", &text).expect("a scene");
+            let [rows, merged] = [MergeKind::None, MergeKind::Ties].map(|merge| {
+                let mut solver = solver(session, &scene, merge);
+                assert_eq!(
+                    solver.n_groups(),
+                    [3, 1][usize::from(merge == MergeKind::Ties)]
+                );
+                let solution = solver.solve().expect("solved");
+                assert!(solution.converged(), "{}", solution.status);
+                solution.u.concat()
+            });
+            assert!(apart(&merged, &rows) < 1e-6, "{}", apart(&merged, &rows));
+        });
+    }
+}
+
 /// Two tied blocks that a load in steps pushes along a plane: the history of friction belongs to the right rows.
 #[test]
 fn friction_beside_merged_bodies() {
