@@ -44,7 +44,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
             local_rows: known.multipliers_local as f64,
             global_rows: known.multipliers_global as f64,
             scaling: name(known.scaling.name()),
-            work: name(&work.line()),
+            work: name(&work.lines()),
         }
     };
 }

@@ -102,7 +102,7 @@ impl Object {
             known.primal,
             known.scaling.name()
         );
-        text += &format!("  {}\n", self.work_done.line());
+        text += &format!("  {}\n", self.work_done.lines());
         for (m, counts) in self.mortar_rows.counts.iter().enumerate() {
             text += &self.mortar_text(m, counts);
         }

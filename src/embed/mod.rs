@@ -8,7 +8,7 @@
 //! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), pairs of subdomains
 //! that hold each other (`bonds`), bodies (`bodies`), the rows of B_gl that tie bodies (`rows`) and those of the host
 //! (`contact`), vertices, edges and faces (`classes`), what is averaged (`averaging`), and enough primal constraints
-//! that no subdomain floats in its body (`rigid_constraints`).
+//! that no subdomain floats in its body (`rigid_constraints`), nor without its averages (`alone`).
 //!
 //! The host's rows come from any rank: the owners of their dofs say where the dofs are and which rows are connected
 //! (`touched`), the rows go to the ranks that take them (`placed`) and nodes with friction go along (`friction`),
@@ -17,6 +17,7 @@
 //! Data that follow from patterns and numbers alone stay in a `frame`: with other entries in the same matrices, other
 //! rows or other gaps (`renewal`) no more is done than they ask for, and `work` counts it.
 
+mod alone;
 mod averaging;
 pub(crate) mod bodies;
 pub(crate) mod bonds;

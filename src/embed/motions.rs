@@ -38,6 +38,8 @@ const NOTHING: f64 = 1e-8;
 pub struct NearKernels {
     /// An orthogonal basis in every part, entries of order one.
     bases: Vec<KernelVectors>,
+    /// For every part a basis of the kernel of its matrix, entries of order one.
+    free: Vec<KernelVectors>,
     /// Components of the field.
     pub components: usize,
     /// For every subdomain of this rank and their neighbours, the number of motions, and whether there are others
@@ -89,7 +91,7 @@ impl NearKernels {
             Some(_) => (0..parts.len()).any(|j| beyond[j] && wrong(j)),
         };
         let own = any(session.comm(), useless);
-        let bases = if own { found } else { known };
+        let bases = if own { found.clone() } else { known };
         let facts = bases.iter().zip(beyond);
         let facts = facts.map(|(basis, beyond)| [basis.len(), usize::from(beyond && !own)]);
         let around = sharers.around(session, &facts.collect::<Vec<_>>());
@@ -97,6 +99,7 @@ impl NearKernels {
         let pairs = own.then(|| pairs(session, sharers, &bases));
         let motions = NearKernels {
             bases,
+            free: found,
             components: torn.block_size,
             around: around.into_iter().map(of).collect(),
             pairs,
@@ -115,6 +118,11 @@ impl NearKernels {
             Some(_) => self.bases[j].clone(),
             None => KernelVectors::new(),
         }
+    }
+
+    /// The kernel of the matrix of part `j`.
+    pub fn free(&self, j: usize) -> &KernelVectors {
+        &self.free[j]
     }
 
     /// The motions of part `j` and its neighbour `high` at the dofs `dofs` that they share: a row for each dof.

@@ -232,7 +232,8 @@ impl Span {
         self.0.len()
     }
 
-    fn rest(&self, mut row: Vec<f64>) -> Vec<f64> {
+    /// The rest of a row beside the detected motions.
+    pub fn rest(&self, mut row: Vec<f64>) -> Vec<f64> {
         for _ in 0..2 {
             for q in &self.0 {
                 let part: f64 = row.iter().zip(q).map(|(x, q)| x * q).sum();
@@ -255,10 +256,11 @@ impl Span {
     }
 }
 
-fn norm(x: &[f64]) -> f64 {
+pub(super) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-fn same_node(torn: &Torn, part: &TornSubdomain, i: u32, j: u32) -> bool {
+/// Whether two local dofs are of one node.
+pub(super) fn same_node(torn: &Torn, part: &TornSubdomain, i: u32, j: u32) -> bool {
     torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize])
 }

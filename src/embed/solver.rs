@@ -149,6 +149,7 @@ impl Embedded {
         };
         let (averaged, mut nodes) =
             motions.missing(session, torn, &parts, &sharers, &classes, &shape);
+        motions.hold_alone(torn, &parts, &sharers, &classes, &shape, &mut nodes);
         for (part, nodes) in parts.iter().zip(&mut nodes) {
             let wanted = |i: &u32| torn.primal.contains(&part.dofs[*i as usize]);
             nodes.extend((0..part.dofs.len() as u32).filter(wanted));

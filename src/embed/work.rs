@@ -1,7 +1,7 @@
 //! The work of the set-ups so far, counted over all ranks: it shows how much was repeated.
 
 use super::partition::partitions;
-use crate::feti::subdomain::problem::factorisations;
+use crate::feti::subdomain::problem::{condensations, factorisations};
 use crate::Result;
 use cholesky::symbolic::analyses;
 use parallel::exchange::sum_all;
@@ -23,8 +23,9 @@ pub enum SetUp {
 pub struct SetUpWork {
     /// Set-ups of everything, of other numbers, of other rows alone.
     pub set_ups: [usize; 3],
-    /// Patterns that were analysed, subdomains that were factored, partitions into bodies that were looked for.
-    pub spent: [f64; 3],
+    /// Patterns that were analysed, subdomains that were factored, partitions into bodies that were looked for,
+    /// subdomains whose S and T became dense matrices.
+    pub spent: [f64; 4],
 }
 
 impl SetUpWork {
@@ -50,17 +51,19 @@ impl SetUpWork {
         Ok(out)
     }
 
-    /// The counts as a line for -ksp_view and FetiFetiView.
-    pub fn line(&self) -> String {
-        let ([whole, numbers, rows], [analysed, factored, partitions]) = (self.set_ups, self.spent);
+    /// The counts as two lines for -ksp_view and FetiFetiView.
+    pub fn lines(&self) -> String {
+        let [whole, numbers, rows] = self.set_ups;
+        let [analysed, factored, partitions, dense] = self.spent;
         format!(
             "set-ups: {whole} whole, {numbers} of numbers, {rows} of rows; {analysed} patterns analysed, \
-             {factored} subdomains factored, {partitions} partitions into bodies"
+             {factored} subdomains factored, {partitions} partitions into bodies\
+             \n  S and T as dense matrices: {dense} of {factored} subdomains factored"
         )
     }
 }
 
-/// Numbers of analyses, factorisations and partitions of this process so far.
-fn now() -> [f64; 3] {
-    [analyses(), factorisations(), partitions()].map(|n| n as f64)
+/// Numbers of analyses, factorisations, partitions and dense condensations of this process so far.
+fn now() -> [f64; 4] {
+    [analyses(), factorisations(), partitions(), condensations()].map(|n| n as f64)
 }

@@ -99,6 +99,30 @@ fn averages_of_motions() {
     assert!(one < sum(1, "components"));
 }
 
+/// Boxes that cross the whole body have no vertices. Nodes of their faces become some, so that K_rr is regular and sparse solves
+/// do.
+#[test]
+fn subdomains_without_vertices() {
+    let scratch = Scratch::new("embed-alone");
+    let program = Program::linked("mpicc", &scratch, "tests/plugin/yardstick.c");
+    for problem in [
+        "-elastic -n 6,4,3 -box 3,2,1 -fetifeti_primal vertices,faces -fetifeti_averages motions",
+        "-n 6,6,3 -box 3,3,1",
+    ] {
+        for ranks in [1, 2] {
+            let tolerance = "-operator capi -fetifeti_ksp_rtol 1e-9";
+            let options =
+                format!("{problem} {tolerance} -fetifeti_operators implicit -fetifeti_view");
+            let out = program.run(ranks, &options);
+            assert_eq!(out.code, 0, "{problem}: {}", out.all());
+            let residual: f64 = after(&out.stdout, "residual").expect("a residual");
+            assert!(residual <= 3e-8, "{problem}: {}", out.all());
+            let dense = after(&out.stdout, "S and T as dense matrices:");
+            assert_eq!(dense, Some(0), "{problem}: {}", out.all());
+        }
+    }
+}
+
 /// A subdomain of one node lies between two others that meet there only. It holds neither of them to the other.
 #[test]
 fn a_node_is_no_hinge_of_a_body() {

@@ -44,9 +44,17 @@ const MOST_FREE: usize = 12;
 /// Factorisations in this process so far.
 static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
 
+/// Factorisations among them that made the dense matrices S and T.
+static CONDENSATIONS: AtomicUsize = AtomicUsize::new(0);
+
 /// Number of subdomains that this process has factored so far. A contact loop must not increase it.
 pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
+}
+
+/// Number of subdomains among them of which this process has made S and T as dense matrices.
+pub fn condensations() -> usize {
+    CONDENSATIONS.load(Ordering::Relaxed)
 }
 
 /// Γ of one subdomain, and Ψ on it.
@@ -174,6 +182,7 @@ impl LocalProblem {
                 });
             }
         }
+        CONDENSATIONS.fetch_add(1, Ordering::Relaxed);
         let given = delta.len();
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {

@@ -1,0 +1,63 @@
+//! Additional vertices: enough that each subdomain in space is held by them alone.
+//!
+//! Averages hold a subdomain in S_Π, but not in K_rr, which is K without the vertices. Without enough of these K_rr is
+//! singular, so that the method needs dense matrices of the subdomain, which take far longer where it is large. Parts
+//! of a mesh at the surface of a body may have one or two vertices. Nodes of their faces are added one by one; each is
+//! the node that moves most in the motions that no vertex detects, which spreads the nodes.
+
+use std::collections::BTreeSet;
+
+use super::classes::InterfaceClass;
+use super::motions::NearKernels;
+use super::parts::TornSubdomain;
+use super::rigid_constraints::{norm, same_node, ConstraintContext, Span};
+use super::sharing::Sharers;
+use super::torn::Torn;
+
+/// A vertex counts if it detects at least this much of a motion (of order one) that those before it do not detect.
+const SEEN: f64 = 0.1;
+
+impl NearKernels {
+    /// Adds to the dofs `nodes` of every local subdomain that are primal beside the vertices of `classes`.
+    pub fn hold_alone(
+        &self,
+        torn: &Torn,
+        parts: &[TornSubdomain],
+        sharers: &Sharers,
+        classes: &[Vec<InterfaceClass>],
+        shape: &ConstraintContext,
+        nodes: &mut [BTreeSet<u32>],
+    ) {
+        if !shape.space {
+            return;
+        }
+        for (j, part) in parts.iter().enumerate() {
+            let free = self.free(j);
+            let body = shape.bodies.of((sharers.first + j) as u32);
+            let inside = |class: &&InterfaceClass| {
+                let same = |s: &&u32| shape.bodies.of(**s) == body;
+                class.sharers.iter().filter(same).count() > 1
+            };
+            let row = |i: u32| -> Vec<f64> { free.iter().map(|x| x[i as usize]).collect() };
+            let mut span = Span::default();
+            let shared = classes[j].iter().filter(inside);
+            let vertices = shared.clone().filter(|c| c.is_vertex());
+            let vertices = vertices.flat_map(|c| &c.dofs).chain(&nodes[j]);
+            vertices.for_each(|&i| span.add(row(i), SEEN));
+            let faces = shared.filter(|c| c.sharers.len() == 2);
+            let dofs: Vec<u32> = faces.flat_map(|c| &c.dofs).copied().collect();
+            while span.rank() < free.len() {
+                let seen = |i: &u32| norm(&span.rest(row(*i)));
+                let best = dofs.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)));
+                let Some(&best) = best.filter(|i| seen(i) > SEEN) else {
+                    break;
+                };
+                let node = dofs.iter().filter(|&&i| same_node(torn, part, i, best));
+                for &i in node {
+                    span.add(row(i), SEEN);
+                    nodes[j].insert(i);
+                }
+            }
+        }
+    }
+}
