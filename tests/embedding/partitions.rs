@@ -99,8 +99,8 @@ fn averages_of_motions() {
     assert!(one < sum(1, "components"));
 }
 
-/// Boxes that cross the whole body have no vertices. Nodes of their faces become some, so that K_rr is regular and sparse solves
-/// do.
+/// Boxes that cross the whole body have no vertices. Nodes of their faces become some, so that K_rr is regular and
+/// sparse solves do.
 #[test]
 fn subdomains_without_vertices() {
     let scratch = Scratch::new("embed-alone");
