@@ -1,4 +1,4 @@
-//! Additional vertices: enough that each subdomain in space is held by them alone.
+//! Additional vertices: enough that each large subdomain in space is held by them alone.
 //!
 //! Averages hold a subdomain in S_Π, but not in K_rr, which is K without the vertices. Without enough of these K_rr is
 //! singular, so that the method needs dense matrices of the subdomain, which take far longer where it is large. Parts
@@ -13,6 +13,7 @@ use super::parts::TornSubdomain;
 use super::rigid_constraints::{norm, same_node, ConstraintContext, Span};
 use super::sharing::Sharers;
 use super::torn::Torn;
+use crate::feti::cost::forms::is_short;
 
 /// A vertex counts if it detects at least this much of a motion (of order one) that those before it do not detect.
 const SEEN: f64 = 0.1;
@@ -32,6 +33,11 @@ impl NearKernels {
             return;
         }
         for (j, part) in parts.iter().enumerate() {
+            let interface: usize = classes[j].iter().map(|c| c.dofs.len()).sum();
+            // Those with a small interface have dense matrices anyway.
+            if is_short(interface) {
+                continue;
+            }
             let free = self.free(j);
             let body = shape.bodies.of((sharers.first + j) as u32);
             let inside = |class: &&InterfaceClass| {

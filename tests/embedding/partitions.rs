@@ -106,8 +106,8 @@ fn subdomains_without_vertices() {
     let scratch = Scratch::new("embed-alone");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/yardstick.c");
     for problem in [
-        "-elastic -n 6,4,3 -box 3,2,1 -fetifeti_primal vertices,faces -fetifeti_averages motions",
-        "-n 6,6,3 -box 3,3,1",
+        "-elastic -n 18,12,8 -box 3,2,1 -fetifeti_primal vertices,faces -fetifeti_averages motions",
+        "-n 36,36,12 -box 3,3,1",
     ] {
         for ranks in [1, 2] {
             let tolerance = "-operator capi -fetifeti_ksp_rtol 1e-9";

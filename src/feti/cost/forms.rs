@@ -240,6 +240,11 @@ fn dense_bytes(kind: &SubdomainKind) -> f64 {
     each * (n_gamma.powi(2) + n_delta.powi(2))
 }
 
+/// Whether S and T of a subdomain with so many interface dofs are dense matrices, because they are made at once.
+pub(crate) fn is_short(n_gamma: usize) -> bool {
+    FLOP * SMALL * (n_gamma as f64).powi(3) < SHORT
+}
+
 /// The cost of a kind; `None` if dense operators are computed so fast that no analysis pays, unless memory is short
 /// (`always`).
 fn count(kind: &SubdomainKind, always: bool) -> Option<CountedKind> {
@@ -247,7 +252,7 @@ fn count(kind: &SubdomainKind, always: bool) -> Option<CountedKind> {
     let interface = [kind.delta, kind.primal].concat();
     let (n_gamma, n_delta) = (interface.len() as f64, kind.delta.len() as f64);
     // Three analyses to choose one do not pay for small interfaces.
-    if FLOP * SMALL * n_gamma.powi(3) < SHORT && !always {
+    if is_short(interface.len()) && !always {
         return None;
     }
     let partial = Symbolic::new(k, &interface, x);
