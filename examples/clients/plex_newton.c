@@ -70,7 +70,12 @@ int main(int argc, char **argv)
   PetscScalar    load = 0.002;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+#if PETSC_VERSION_GE(3, 22, 0)
+  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, upper, NULL, PETSC_TRUE, 0, PETSC_TRUE,
+                                &dm));
+#else
   PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, upper, NULL, PETSC_TRUE, &dm));
+#endif
   PetscCall(DMSetFromOptions(dm));
   PetscCall(PetscFECreateLagrange(PETSC_COMM_WORLD, 2, 2, PETSC_FALSE, 1, PETSC_DEFAULT, &fe));
   PetscCall(DMAddField(dm, NULL, (PetscObject)fe));

@@ -38,7 +38,7 @@ use parallel::clock::{self, Phase};
 use parallel::exchange::any;
 use parallel::halo::Halo;
 use parallel::team::Team;
-use petsc::{Comm, Event, Ksp, NormType, Session, Vec as PetscVec};
+use petsc::{Comm, Event, Ksp, NormType, Options, Session, Vec as PetscVec};
 
 /// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;
@@ -318,14 +318,16 @@ fn krylov(session: &Session, system: &Rc<DualSystem>, settings: &MethodSettings)
     let pc = ksp.pc()?;
     pc.set_shell("fetifeti", shells::preconditioner_shell(system))?;
     pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
-    ksp.set_from_options()?;
-    let (rtol, _, _, max_it) = ksp.tolerances()?;
-    if max_it < 0 {
+    // Since PETSc 3.23 negative numbers are names of other values, or an error without the option's name.
+    let asked = Options::new(session, &settings.prefix).get_i64("ksp_max_it")?;
+    if let Some(max_it) = asked.filter(|&n| n < 0) {
         return Err(Error::input(format!(
             "option -{}ksp_max_it is {max_it}, expected a number of iterations, at least 0",
             settings.prefix
         )));
     }
+    ksp.set_from_options()?;
+    let (rtol, ..) = ksp.tolerances()?;
     if !(0.0..1.0).contains(&rtol) {
         return Err(Error::input(format!(
             "option -{}ksp_rtol is {rtol}, expected a number from 0 to below 1",

@@ -38,7 +38,9 @@ pub fn run(program: &str, args: &[&str], dir: &Path, pkg_config: &str) -> String
     let mut command = Command::new(program);
     command.args(args).current_dir(dir);
     if !pkg_config.is_empty() {
-        command.env("PKG_CONFIG_PATH", pkg_config);
+        // Another PETSc than the system's is found by what was there before.
+        let before = std::env::var("PKG_CONFIG_PATH").unwrap_or_default();
+        command.env("PKG_CONFIG_PATH", format!("{pkg_config}:{before}"));
     }
     succeed(command)
 }

@@ -146,6 +146,10 @@ impl Distributed {
         new.defect = defect;
         // Not every solver has a transpose.
         let transposed = !unsymmetric || session.agree(new.apply(InverseSide::Transposed)).is_ok();
+        if !transposed {
+            // The failed solve has left its right-hand side locked.
+            new.rhs = new.rhs.duplicate()?;
+        }
         let exact = new.ksp.type_name()? == "preonly" && residual <= EXACT;
         if !exact || !transposed {
             let around = Ksp::new(session, Comm::World)?;
