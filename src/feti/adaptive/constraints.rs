@@ -232,7 +232,7 @@ fn pencil_term(
     let mut psi = Dense::zeros(n, local.gamma().n_pi());
     for p in 0..psi.cols {
         for (k, &i) in at.iter().enumerate() {
-            psi.set(k, p, local.gamma().psi.get(i, p));
+            psi.set(k, p, local.psi().get(i, p));
         }
     }
     PencilTerm {

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!     explicit   f (flops of [I, Γ] → S and of S → T)  +  applications · copies · (n_Γ² + n_Δ²) · d
-//!     implicit   f (flops of K_rr and K_II)  +  columns of Ψ · 2 l · e  +  applications · copies · 2 (l_rr + l_II) · e
+//!     implicit   f (flops of K_rr and K_II)  +  n_Π l_rr e (copies)  +  applications · copies · 2 (l_rr + l_II) · e
 //! ```
 //!
 //! n follows from the interface. Flops and the entries l of the factors follow from the symbolic factorisation and are
@@ -12,12 +12,14 @@
 
 use std::sync::Arc;
 
+use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
 use crate::feti::subdomain::equal::Likeness;
+use crate::feti::subdomain::implicit;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::substructures::{Problem, Subdomain};
-use cholesky::interior::{Analysed, Analysis};
+use cholesky::interior::{Analysed, Analysis, SparseAnalysis};
 use cholesky::symbolic::Keep;
 use cholesky::symbolic::Symbolic;
 use parallel::team::Team;
@@ -62,7 +64,7 @@ pub struct Cost {
 struct CountedKind {
     cost: Cost,
     dense: Symbolic,
-    sparse: [Symbolic; 2],
+    sparse: SparseAnalysis,
 }
 
 impl CountedKind {
@@ -74,7 +76,7 @@ impl CountedKind {
                 .dense
                 .set(Arc::new(Analysis::new(self.dense)))
                 .is_ok(),
-            OperatorForm::Implicit => analysed.sparse.set(self.sparse.map(Analysis::new)).is_ok(),
+            OperatorForm::Implicit => analysed.sparse.set(self.sparse).is_ok(),
         };
         debug_assert!(is_new);
         Arc::new(analysed)
@@ -102,8 +104,8 @@ pub struct SubdomainKind<'a> {
     pub delta: &'a [u32],
     /// Primal dofs.
     pub primal: &'a [u32],
-    /// Number of averages.
-    pub averages: usize,
+    /// The averages.
+    pub averages: &'a [Average],
     /// Number of subdomains of this kind on this rank.
     pub copies: usize,
 }
@@ -116,7 +118,7 @@ impl SubdomainKind<'_> {
             OperatorForm::Explicit => {
                 Symbolic::new(k, &[self.delta, self.primal].concat(), x).factor_entries(self.keep())
             }
-            OperatorForm::Implicit => sparse_entries(&self.sparse()),
+            OperatorForm::Implicit => self.sparse().entries(),
         }
     }
 
@@ -130,16 +132,11 @@ impl SubdomainKind<'_> {
         }
     }
 
-    /// Symbolic factorisations of K_rr and K_II.
-    fn sparse(&self) -> [Symbolic; 2] {
-        let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
-        let inside = k.others(&[self.delta, self.primal].concat());
-        let places: Option<Vec<[f64; 3]>> =
-            x.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
-        [
-            Symbolic::new(k, self.primal, x),
-            Symbolic::new(&k.restricted(&inside), &[], places.as_deref()),
-        ]
+    /// The analyses behind sparse solves.
+    fn sparse(&self) -> SparseAnalysis {
+        let dofs = self.averages.iter().map(|a| a.dofs.clone()).collect();
+        let x = self.sub.coordinates.as_deref();
+        implicit::analysis(&self.sub.k, self.delta, self.primal, dofs, x)
     }
 }
 
@@ -155,7 +152,7 @@ pub fn kinds<'a>(
         sub: &problem.local[j],
         delta: &jump.delta[j],
         primal: &jump.primal[j],
-        averages: jump.averages[j].len(),
+        averages: &jump.averages[j],
         copies: first.iter().filter(|f| f.first == j).count(),
     };
     own.map(of).collect()
@@ -224,14 +221,6 @@ pub fn choose(
     (forms, analysed)
 }
 
-/// Entries of the factors behind sparse solves.
-fn sparse_entries(factors: &[Symbolic; 2]) -> usize {
-    factors
-        .iter()
-        .map(|f| f.factor_entries(Keep::Interior))
-        .sum()
-}
-
 /// Bytes of S and T.
 fn dense_bytes(kind: &SubdomainKind) -> f64 {
     let n_delta = kind.delta.len() as f64;
@@ -261,26 +250,30 @@ fn count(kind: &SubdomainKind, always: bool) -> Option<CountedKind> {
     if make < SHORT && !always {
         return None;
     }
-    let sparse_factors = kind.sparse();
-    let of_held = sparse_factors[0].factor_entries(Keep::Interior) as f64;
-    let flops: f64 = sparse_factors.iter().map(Symbolic::flops).sum();
-    let entries = sparse_entries(&sparse_factors) as f64;
-    let columns = (kind.primal.len() + 2 * kind.averages) as f64;
+    let analysis = kind.sparse();
+    let of_held = analysis.held.symbolic().factor_entries(Keep::Boundary) as f64;
+    let entries = analysis.entries() as f64;
+    // Ψ is stored for copies.
+    let stored = kind.primal.len() + kind.averages.len();
+    let columns = if kind.copies > 1 { stored as f64 } else { 0.0 };
     let (dense, sparse) = match kind.copies {
         n if n < MANY => (DENSE, SPARSE),
         _ => (DENSE_SHARED, SPARSE_SHARED),
     };
     let copies = kind.copies as f64;
-    let psi = columns * 2.0 * of_held * SPARSE_SHARED;
+    let psi = columns * of_held * SPARSE_SHARED;
     let cost = Cost {
         explicit: [make, copies * dense * (n_gamma.powi(2) + n_delta.powi(2))],
-        implicit: [FLOP * flops + psi, copies * sparse * 2.0 * entries],
+        implicit: [
+            FLOP * analysis.flops() + psi,
+            copies * sparse * 2.0 * entries,
+        ],
         dense_bytes: dense_bytes(kind),
     };
     Some(CountedKind {
         cost,
         dense: partial,
-        sparse: sparse_factors,
+        sparse: analysis,
     })
 }
 

@@ -68,7 +68,7 @@ impl Applied {
         let (functions, locals) = (&self.functions, &stiffness.locals);
         stiffness.team.for_each(w, |j, w| {
             let mut p = vec![0.0; locals[j].gamma().n_pi()];
-            locals[j].gamma().psi_transpose(w, &mut p); /*        p ← Ψᵀ E_Dᵀ w   */
+            locals[j].begin(w, &mut p); /*                p ← Ψᵀ E_Dᵀ w   */
             w.resize(functions[j].columns.len(), 0.0);
             functions[j].gather(&p, w); /*                c ← Iᵀ p        */
         });
@@ -93,7 +93,7 @@ impl Applied {
             functions[j].spread(&c, &mut p); /*           p ← I c         */
             w.clear();
             w.resize(locals[j].gamma().n_gamma(), 0.0);
-            locals[j].gamma().add_psi(&p, w); /*                  w ← Ψ p         */
+            locals[j].add_psi(&p, w); /*                  w ← Ψ p         */
         });
         self.averaging.apply(Transposition::Plain, w) /*            w ← E_D w       */
     }

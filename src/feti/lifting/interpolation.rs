@@ -77,7 +77,7 @@ impl Functions {
         out.psi = Dense::zeros(local.gamma().n_delta, out.columns.len());
         for &(p, c, w) in &out.weights {
             let terms = out.psi.col_mut(c as usize).iter_mut();
-            let terms = terms.zip(local.gamma().psi.col(p as usize));
+            let terms = terms.zip(local.psi().col(p as usize));
             terms.for_each(|(y, x)| *y += w * x);
         }
         out

@@ -1,5 +1,6 @@
 //! F, M⁻¹ and P as products, and as PETSc operators.
 
+mod columns;
 pub mod coupling;
 pub mod dual;
 mod jumps;

@@ -25,7 +25,6 @@ use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::substructures::Problem;
 use crate::Result;
-use base::linalg::dense::Dense;
 use parallel::halo::Halo;
 use parallel::team::Team;
 use petsc::{Session, Vec as PetscVec};
@@ -56,13 +55,16 @@ pub struct Stiffness {
     springs: Option<Springs>,
     /// By how much nodes give way, by owned row, where there may be springs.
     nodes: Option<Vec<f64>>,
-    buffers: RefCell<Buffers>,
+    pub(super) buffers: RefCell<Buffers>,
 }
 
+/// Buffers of the products.
 #[derive(Default)]
-struct Buffers {
-    work: Vec<InterfaceBuffers>,
-    ghost: Vec<f64>,
+pub(super) struct Buffers {
+    /// Of every local subdomain.
+    pub work: Vec<InterfaceBuffers>,
+    /// Multipliers at this rank's ghosts.
+    pub ghost: Vec<f64>,
 }
 
 impl Stiffness {
@@ -160,7 +162,7 @@ impl Stiffness {
 
     /// Receives the contributions to Ψᵀ v that are under way and applies S_Π⁺. `c` (at this rank's ghosts) has this
     /// rank's contributions on entry and S_Π⁺ of their sum on return. Collective.
-    fn primal_finish(&self, c: &mut [f64]) -> Result<()> {
+    pub(super) fn primal_finish(&self, c: &mut [f64]) -> Result<()> {
         let Some(refinement) = &self.refinement else {
             return self.primal.finish(&self.team, c);
         };
@@ -175,22 +177,24 @@ impl Stiffness {
         Ok(())
     }
 
-    /// S_Π⁺ Ψᵀ work.v at this rank's ghosts. Collective.
-    fn coarse_values(&self, work: &mut [InterfaceBuffers]) -> Result<Vec<f64>> {
-        let mut sum = self.coarse_begin(work)?;
-        self.primal_finish(&mut sum)?; /*                 c ← S_Π⁺ p     */
-        Ok(sum)
-    }
-
     /// Ψᵀ work.v at this rank's ghosts; starts sending it to the owners. Collective.
     fn coarse_begin(&self, work: &mut [InterfaceBuffers]) -> Result<Vec<f64>> {
         let locals = &self.locals;
         self.team.for_each(work, |j, w| {
-            locals[j].gamma().psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
+            w.half = locals[j].begin(&w.v, &mut w.p); /*  p ← Ψᵀ v       */
         });
+        self.sum_begin(work.iter().map(|w| &w.p[..]))
+    }
+
+    /// The sum at this rank's ghosts of the coarse values of all local subdomains; starts sending it to the owners.
+    /// Collective.
+    pub(super) fn sum_begin<'a>(
+        &self,
+        values: impl Iterator<Item = &'a [f64]>,
+    ) -> Result<Vec<f64>> {
         let mut sum = vec![0.0; self.space.ghosts.len()];
-        for (w, places) in work.iter().zip(&self.space.of_subdomain) {
-            for (&g, p) in places.iter().zip(&w.p) {
+        for (p, places) in values.zip(&self.space.of_subdomain) {
+            for (&g, p) in places.iter().zip(p) {
                 sum[g as usize] += p;
             }
         }
@@ -199,7 +203,7 @@ impl Stiffness {
     }
 
     /// p ← the coarse values of local subdomain `j`.
-    fn local_values(space: &PrimalSpace, j: usize, coarse: &[f64], p: &mut [f64]) {
+    pub(super) fn local_values(space: &PrimalSpace, j: usize, coarse: &[f64], p: &mut [f64]) {
         for (&g, p) in space.of_subdomain[j].iter().zip(p) {
             *p = coarse[g as usize];
         }
@@ -217,13 +221,20 @@ impl Stiffness {
         // These products overlap with the messages:
         self.team.for_each(work, |j, w| {
             products.take(j, &locals[j], &mut w.y, |y| {
-                locals[j].apply_one(Operator::T, &w.v, y)
-            }); /*                                        y ← T v        */
+                if !locals[j].in_halves() {
+                    locals[j].apply_one(Operator::T, &w.v, y); /* y ← T v    */
+                }
+            });
         });
         self.primal_finish(&mut coarse)?; /*              c ← S_Π⁺ p     */
         self.team.for_each(work, |j, w| {
             Self::local_values(space, j, &coarse, &mut w.p);
-            locals[j].gamma().add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+            if locals[j].in_halves() {
+                let half = std::mem::take(&mut w.half);
+                locals[j].finish(half, &w.p, &mut w.y); /* y ← T v + Ψ c  */
+            } else {
+                locals[j].add_psi(&w.p, &mut w.y); /*     y ← y + Ψ c    */
+            }
         });
         Ok(())
     }
@@ -267,53 +278,6 @@ impl Stiffness {
                 columns.of(j).add_b(&w.y, ghost); /*      out ← B y      */
             }
             self.dual_halo.sum(ghost, out)?;
-        }
-        Ok(())
-    }
-
-    /// outs ← F λs, several columns at once. `change` may modify the loads Bᵀ λ of each column before S̃⁺ is applied. T
-    /// is read once for all columns. Collective.
-    pub fn f_mult_many(
-        &self,
-        lambdas: &[PetscVec],
-        outs: &[PetscVec],
-        change: impl Fn(&mut [InterfaceBuffers]),
-    ) -> Result<()> {
-        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
-        let (columns, locals) = (&self.jump.columns, &self.locals);
-        let room = |local: &ScaledSubdomain| {
-            let zeros = || Dense::zeros(local.gamma().n_delta, lambdas.len());
-            (zeros(), zeros())
-        };
-        let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
-        let mut coarse = Vec::new();
-        for (c, lambda) in lambdas.iter().enumerate() {
-            self.dual_halo.fetch(lambda, ghost)?;
-            let received = &*ghost;
-            self.team.for_each(work, |j, w| {
-                columns.of(j).b_transpose(received, &mut w.v); /* v ← Bᵀ λ  */
-            });
-            change(work);
-            coarse.push(self.coarse_values(work)?); /*        c ← S_Π⁺ Ψᵀ v  */
-            for (w, (v, _)) in work.iter().zip(&mut blocks) {
-                let n = v.rows;
-                v.col_mut(c).copy_from_slice(&w.v[..n]);
-            }
-        }
-        self.team.for_each(&mut blocks, |j, (v, y)| {
-            locals[j].apply(Operator::T, v, y); /*            y ← T v        */
-        });
-        for (c, out) in outs.iter().enumerate() {
-            let (blocks, sum, space) = (&blocks, &coarse[c], &self.space);
-            self.team.for_each(work, |j, w| {
-                w.y.fill(0.0);
-                let y = blocks[j].1.col(c);
-                w.y[..y.len()].copy_from_slice(y);
-                Self::local_values(space, j, sum, &mut w.p);
-                locals[j].gamma().add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
-            });
-            self.jump_of(work, out)?; /*                      out ← B y      */
-            self.add_compliance(1.0, &lambdas[c], out)?; /*   out ← out + C λ */
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Buffers for the vectors of one subdomain.
 
+use crate::feti::subdomain::halves::Halfway;
 use crate::feti::subdomain::scaled::ScaledSubdomain;
 use base::linalg::dense::Dense;
 
@@ -12,6 +13,8 @@ pub struct InterfaceBuffers {
     pub y: Vec<f64>,
     /// Coarse values in and out, length n_Π.
     pub p: Vec<f64>,
+    /// The part of the output that is there before the coarse values are known.
+    pub half: Halfway,
 }
 
 /// Several columns of one subdomain on its interface Γ.
@@ -30,6 +33,7 @@ impl InterfaceBuffers {
             v: vec![0.0; local.gamma().n_gamma()],
             y: vec![0.0; local.gamma().n_gamma()],
             p: vec![0.0; local.gamma().n_pi()],
+            half: Halfway::default(),
         }
     }
 }

@@ -326,7 +326,7 @@ impl PrimalSpace {
                 .iter()
                 .map(|&g| self.z_at_ghosts[g as usize][c])
                 .collect();
-            local.gamma().add_psi(&z, r.col_mut(c));
+            local.add_psi(&z, r.col_mut(c));
         }
         r
     }

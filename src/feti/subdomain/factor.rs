@@ -93,6 +93,9 @@ pub(crate) fn factor(
                 if let Some(&i) = gamma.fixing.iter().find(|&&i| local.stiff[i] == 0.0) {
                     return Err(no_stiffness(problem, sub, gamma.interface[i]));
                 }
+                if kind.copies > 1 {
+                    local.store_psi();
+                }
                 if kind.copies < forms::MANY {
                     local.pack();
                 }
@@ -202,7 +205,11 @@ fn pattern_hash(kind: &SubdomainKind) -> u64 {
 
 fn same_pattern(a: &SubdomainKind, b: &SubdomainKind) -> bool {
     let (k, l) = (&a.sub.k, &b.sub.k);
-    (a.delta, a.primal) == (b.delta, b.primal) && k.row_ptr == l.row_ptr && k.col == l.col
+    let averages = |kind: &SubdomainKind| -> Vec<Vec<u32>> {
+        kind.averages.iter().map(|a| a.dofs.clone()).collect()
+    };
+    let same = (a.delta, a.primal) == (b.delta, b.primal) && averages(a) == averages(b);
+    same && k.row_ptr == l.row_ptr && k.col == l.col
 }
 
 /// The error for the user when subdomain `sub` cannot be factored.

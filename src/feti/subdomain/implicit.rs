@@ -1,32 +1,22 @@
 //! S and T of one subdomain as sparse triangular solves, without a dense matrix.
 //!
-//! K is ordered [I, Γ] for S. For T it is ordered [r, v], with v the vertices and r all other dofs:
+//! K is ordered [I, Γ] for S, S y = K_ΓΓ y − K_ΓI K_II⁻¹ K_IΓ y. For T it is ordered [r, v], with v the vertices and r
+//! all other dofs, and the averages are held by multipliers ([`Held`]).
 //!
-//! ```text
-//!     S y = K_ΓΓ y − K_ΓI K_II⁻¹ K_IΓ y
-//!     T w = X₀ − X M⁻¹ Qᵀ X₀,     X₀ = K_rr⁻¹ w on Δ,   X = K_rr⁻¹ Q on Δ,   M = Qᵀ X
-//!     Ψ   = [Ψ₀ − X M⁻¹ Qᵀ Ψ₀,  X M⁻¹ D]               Ψ₀ = −K_rr⁻¹ K_rv on Δ,   D the factors of the averages
-//!     Σ   = [S_vv + AᵀM⁻¹A,  −AᵀM⁻¹D;  ·,  D M⁻¹ D]     A = Qᵀ Ψ₀
-//! ```
-//!
-//! The columns of Q are the unit vectors behind the averages. Two sparse factorisations replace the dense matrices; an
-//! application reads both factors twice. This pays in space, where S is nearly as large as a factor and takes many
-//! times as long to compute.
+//! Two sparse factorisations replace the dense matrices; an application reads both factors twice. This pays in space,
+//! where S is nearly as large as a factor and takes many times as long to compute.
 
 use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
+use super::held::{self, Held};
 use super::which::Operator;
 use base::linalg::csr::Csr;
-use base::linalg::dense::{self, Dense, Scratch};
-use cholesky::interior::{Analysed, Analysis};
+use base::linalg::dense::Dense;
+use cholesky::interior::{Analysed, Analysis, SparseAnalysis};
 use cholesky::lanes::LANES;
 use cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use cholesky::symbolic::Symbolic;
-
-/// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
-/// subdomain then.
-const WEAKLY_HELD: f64 = 1e-6;
 
 /// The operators of one subdomain.
 #[derive(Debug)]
@@ -41,27 +31,17 @@ pub struct Implicit {
     k_gamma: Csr,
     /// K_II.
     interior: PartialCholesky,
-    /// K_rr, factored with the vertices kept.
-    held: PartialCholesky,
-    /// X, n_Δ × averages.
-    x: Dense,
-    /// M = L Lᵀ.
-    m: Dense,
+    /// K_rr with the vertices and averages as a border.
+    held: Held,
     /// S and T as dense matrices, filled at the first request.
     whole: [OnceLock<Arc<Dense>>; 2],
-}
-
-/// Ψ on Δ and Σ, which come from the same factors.
-pub struct Coarse {
-    /// n_Δ × n_Π.
-    pub psi: Dense,
-    /// n_Π × n_Π.
-    pub sigma: Dense,
+    /// Ψ on Δ, filled at the first request.
+    psi: OnceLock<Dense>,
 }
 
 impl Implicit {
-    /// Factors K_II and K_rr. Returns `None` if the vertices do not hold the subdomain. Analyses of the pattern are
-    /// taken from `analysed` and left there.
+    /// Factors K_II and K_rr; returns Σ, too. `None` if the vertices do not hold the subdomain. Analyses of the pattern
+    /// are taken from `analysed` and left there.
     ///
     /// # Errors
     /// An interior that nothing holds.
@@ -72,41 +52,31 @@ impl Implicit {
         basis: &Basis,
         coordinates: Option<&[[f64; 3]]>,
         analysed: Option<&Analysed>,
-    ) -> Result<Option<(Implicit, Coarse)>, SingularInterior> {
-        let vertices = &interface[n_delta..];
+    ) -> Result<Option<(Implicit, Dense)>, SingularInterior> {
+        let (delta, vertices) = interface.split_at(n_delta);
         let inside = k.others(interface);
+        let averages = held::vectors(delta, basis);
 
+        let dofs: Vec<Vec<u32>> = averages.iter().map(|a| a.0.clone()).collect();
         let known = analysed.and_then(|a| a.sparse.get());
+        let known = known.filter(|known| known.averages == dofs);
         let new = known
             .is_none()
-            .then(|| Analysis::new(Symbolic::new(k, vertices, coordinates)));
-        let of_held = known.map_or_else(|| new.as_ref().expect("made just now"), |k| &k[0]);
-        let Ok((held, s_vv)) = of_held.solver(k) else {
+            .then(|| analysis(k, delta, vertices, dofs, coordinates));
+        let known = known.or(new.as_ref()).expect("one of both");
+        let border = [delta, vertices];
+        let Some((held, sigma)) = Held::new(k, border, basis, &averages, &known.held) else {
             return Ok(None);
         };
-        if held.weakest_pivot(k) <= WEAKLY_HELD {
-            return Ok(None);
-        }
-        let k_inside = k.restricted(&inside);
-        let singular = |e: SingularInterior| SingularInterior {
+        let made = known.interior.solver(&k.restricted(&inside));
+        let (interior, _) = made.map_err(|e| SingularInterior {
             dof: inside[e.dof as usize],
-        };
-        let (interior, _) = match known {
-            Some([_, of_interior]) => of_interior.solver(&k_inside).map_err(singular)?,
-            None => {
-                let places: Option<Vec<[f64; 3]>> =
-                    coordinates.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
-                let of_interior = Analysis::new(Symbolic::new(&k_inside, &[], places.as_deref()));
-                let made = of_interior.solver(&k_inside).map_err(singular)?;
-                if let (Some(analysed), Some(of_held)) = (analysed, new) {
-                    // Another thread may have left them in the meantime, which are the same.
-                    let _ = analysed.sparse.set([of_held, of_interior]);
-                }
-                made
-            }
-        };
-
-        let mut out = Implicit {
+        })?;
+        if let (Some(analysed), Some(new)) = (analysed, new) {
+            // Another thread may have left one in the meantime, which is the same.
+            let _ = analysed.sparse.set(new);
+        }
+        let out = Implicit {
             coupling: k.block(&inside, interface),
             k_gamma: k.block(interface, interface),
             interface: interface.to_vec(),
@@ -114,106 +84,31 @@ impl Implicit {
             n_delta,
             interior,
             held,
-            x: Dense::zeros(n_delta, 0),
-            m: Dense::default(),
             whole: Default::default(),
+            psi: OnceLock::new(),
         };
-        let q = basis.vectors(interface.len());
-        let q: Vec<&[f64]> = q.iter().map(|q| &q[..n_delta]).collect();
-        let loads = q.iter().map(|q| out.on_delta(q)).collect();
-        let x = out.solve_held(loads);
-        out.x = columns(n_delta, &x);
-        let mut m = Dense::zeros(q.len(), q.len());
-        for (b, x) in x.iter().enumerate() {
-            for (a, q) in q.iter().enumerate() {
-                m.set(a, b, dense::dot(q, x));
-            }
-        }
-        // Averages that are determined by the vertices would make M singular.
-        if dense::cholesky(m.view_mut(), &mut Scratch::default()).is_err() {
-            return Ok(None);
-        }
-        out.m = m;
-        let coarse = out.coarse(k, &q, &s_vv, basis);
-        Ok(Some((out, coarse)))
+        Ok(Some((out, sigma)))
     }
 
-    fn coarse(&self, k: &Csr, q: &[&[f64]], s_vv: &Dense, basis: &Basis) -> Coarse {
-        let vertices = &self.interface[self.n_delta..];
-        let (n_v, n_q) = (vertices.len(), q.len());
-        // −K_rv: the load on r when one vertex moves.
-        let pull = |&v: &u32| {
-            let mut b = vec![0.0; self.n()];
-            let (col, val) = k.row(v as usize);
-            col.iter().zip(val).for_each(|(&j, v)| b[j as usize] = -v);
-            b
-        };
-        let moved = self.solve_held(vertices.iter().map(pull).collect());
-        // M⁻¹ [A, D]
-        let mut right = Dense::zeros(n_q, n_v + n_q);
-        let mut a = Dense::zeros(n_q, n_v);
-        for (j, psi) in moved.iter().enumerate() {
-            for (i, q) in q.iter().enumerate() {
-                a.set(i, j, dense::dot(q, psi));
-            }
-            right.col_mut(j).copy_from_slice(a.col(j));
-        }
-        for i in 0..n_q {
-            right.set(i, n_v + i, basis.factor(i));
-        }
-        dense::solve_lower(self.m.view(), right.view_mut());
-        dense::solve_lower_transpose(self.m.view(), right.view_mut());
+    /// K_rr with its border.
+    pub fn held(&self) -> &Held {
+        &self.held
+    }
 
-        let n_pi = n_v + n_q;
-        let mut psi = Dense::zeros(self.n_delta, n_pi);
-        for (j, moved) in moved.iter().enumerate() {
-            psi.col_mut(j).copy_from_slice(moved);
-        }
-        let mut sigma = Dense::zeros(n_pi, n_pi);
-        for j in 0..n_pi {
-            let sign = if j < n_v { -1.0 } else { 1.0 };
-            let c: Vec<f64> = right.col(j).iter().map(|c| sign * c).collect();
-            self.x.add_mul(&c, psi.col_mut(j));
-            for i in 0..n_v {
-                let own = if j < n_v { s_vv.get(i, j) } else { 0.0 };
-                sigma.set(i, j, own - dense::dot(a.col(i), &c));
-            }
-            for (i, c) in c.iter().enumerate() {
-                sigma.set(n_v + i, j, basis.factor(i) * c);
-            }
-        }
-        sigma.symmetrise();
-        Coarse { psi, sigma }
+    /// Ψ on Δ as a dense matrix, built column by column once.
+    pub fn psi(&self) -> &Dense {
+        self.psi.get_or_init(|| self.held.psi())
     }
 
     fn n(&self) -> usize {
         self.inside.len() + self.interface.len()
     }
 
-    /// A load on Δ, extended by zero to all dofs.
-    fn on_delta(&self, w: &[f64]) -> Vec<f64> {
-        let mut b = vec![0.0; self.n()];
-        let delta = self.interface[..self.n_delta].iter().zip(w);
-        delta.for_each(|(&i, w)| b[i as usize] = *w);
-        b
-    }
-
-    fn take_delta(&self, b: &[f64]) -> Vec<f64> {
-        let delta = self.interface[..self.n_delta].iter();
-        delta.map(|&i| b[i as usize]).collect()
-    }
-
-    /// K_rr⁻¹ of loads on all dofs, on Δ.
-    fn solve_held(&self, mut b: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        self.held.solve_many(&mut b);
-        b.iter().map(|b| self.take_delta(b)).collect()
-    }
-
     /// A v for each of `v`, A one of the operators.
     pub fn apply(&self, which: Operator, v: &[&[f64]]) -> Vec<Vec<f64>> {
         match which {
             Operator::S => self.s(v),
-            Operator::T => self.t(v),
+            Operator::T => self.held.t(v),
         }
     }
 
@@ -273,23 +168,6 @@ impl Implicit {
     /// S as a dense matrix, if it has been asked for.
     pub fn known_s(&self) -> Option<&Dense> {
         self.whole[0].get().map(|s| &**s)
-    }
-
-    /// T w for each of `w` (length n_Δ or more, of which the first n_Δ entries count).
-    fn t(&self, w: &[&[f64]]) -> Vec<Vec<f64>> {
-        let loads = w.iter().map(|w| self.on_delta(&w[..self.n_delta]));
-        let mut y = self.solve_held(loads.collect());
-        if self.x.cols > 0 {
-            for (y, w) in y.iter_mut().zip(w) {
-                let mut c = Dense::zeros(self.x.cols, 1);
-                self.x.add_mul_transpose(&w[..self.n_delta], c.col_mut(0));
-                dense::solve_lower(self.m.view(), c.view_mut());
-                dense::solve_lower_transpose(self.m.view(), c.view_mut());
-                c.data.iter_mut().for_each(|c| *c = -*c);
-                self.x.add_mul(c.col(0), y);
-            }
-        }
-        y
     }
 
     /// K_II⁻¹ of several loads on the interior dofs.
@@ -353,20 +231,31 @@ impl Implicit {
 
     /// Bytes of the factors and of the blocks of K, and of the dense parts.
     pub fn bytes(&self) -> (usize, usize) {
-        let sparse = self.interior.bytes()
-            + self.held.bytes()
-            + self.coupling.bytes()
-            + self.k_gamma.bytes();
+        let (held, dense) = self.held.bytes();
+        let sparse = self.interior.bytes() + held + self.coupling.bytes() + self.k_gamma.bytes();
         let whole = self.whole.iter().filter_map(OnceLock::get);
-        let whole: usize = whole.map(|a| a.data.len()).sum();
-        (sparse, 8 * (self.x.data.len() + self.m.data.len() + whole))
+        let psi = self.psi.get().map_or(0, |psi| psi.data.len());
+        let whole: usize = whole.map(|a| a.data.len()).sum::<usize>() + psi;
+        (sparse, dense + 8 * whole)
     }
 }
 
-fn columns(rows: usize, of: &[Vec<f64>]) -> Dense {
-    Dense {
-        rows,
-        cols: of.len(),
-        data: of.concat(),
+/// The analyses behind sparse solves, for a pattern with these dofs in Δ, vertices, and dofs of each average.
+pub fn analysis(
+    k: &Csr,
+    delta: &[u32],
+    vertices: &[u32],
+    averages: Vec<Vec<u32>>,
+    coordinates: Option<&[[f64; 3]]>,
+) -> SparseAnalysis {
+    let inside = k.others(&[delta, vertices].concat());
+    let at = |x: &[[f64; 3]]| inside.iter().map(|&i| x[i as usize]).collect();
+    let places: Option<Vec<[f64; 3]>> = coordinates.map(at);
+    let interior = Symbolic::new(&k.restricted(&inside), &[], places.as_deref());
+    let held = Held::analysis(k, vertices, averages.iter().map(Vec::as_slice), coordinates);
+    SparseAnalysis {
+        held: Analysis::new(held),
+        averages,
+        interior: Analysis::new(interior),
     }
 }

@@ -5,6 +5,8 @@ pub mod condense;
 pub mod congruent;
 pub mod equal;
 pub mod factor;
+pub mod halves;
+pub mod held;
 pub mod implicit;
 pub mod loads;
 pub mod operators;

@@ -68,7 +68,8 @@ pub struct Gamma {
     pub basis: Basis,
     /// Positions in Γ of the fixing dofs: coordinates that were added to the primal dofs to make S_ΔΔ regular.
     pub fixing: Vec<usize>,
-    /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
+    /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others). Empty where
+    /// nobody shares the sparse factor that it follows from ([`ScaledSubdomain::psi`](super::scaled::ScaledSubdomain)).
     pub psi: Dense,
     /// R of a turned copy, whose fixing dofs are dofs of Rᵀ u; see [`Turn`].
     pub turn: Option<Turn>,
@@ -166,7 +167,7 @@ impl LocalProblem {
             // The dense form handles an interior that nothing holds.
             let (n_delta, known) = (delta.len(), condenser.analysed);
             let made = Implicit::new(k, &interface, n_delta, &basis, coordinates, known);
-            if let Ok(Some((implicit, coarse))) = made {
+            if let Ok(Some((implicit, sigma))) = made {
                 return Ok(LocalProblem {
                     stiff: diagonal(k, &interface),
                     gamma: Gamma {
@@ -174,10 +175,10 @@ impl LocalProblem {
                         n_delta: delta.len(),
                         basis,
                         fixing: Vec::new(),
-                        psi: coarse.psi,
+                        psi: Dense::default(),
                         turn: None,
                     },
-                    sigma: coarse.sigma,
+                    sigma,
                     operators: SchurOperators::sparse(implicit),
                 });
             }
@@ -266,6 +267,19 @@ impl LocalProblem {
         let vertices = (self.gamma.n_delta..n).map(own);
         let fixing = self.gamma.fixing.iter().map(|&i| own(i));
         vertices.chain(vectors.map(along)).chain(fixing).collect()
+    }
+
+    /// The solves that Ψ follows from, where it is not stored.
+    pub(crate) fn in_halves(&self) -> Option<&Implicit> {
+        let solves = self.operators.solves();
+        solves.filter(|_| self.gamma.psi.cols < self.gamma.n_pi())
+    }
+
+    /// Stores Ψ: several subdomains read it together.
+    pub(crate) fn store_psi(&mut self) {
+        if let Some(psi) = self.in_halves().map(|solves| solves.held().psi()) {
+            self.gamma.psi = psi;
+        }
     }
 
     /// Bytes of the factor and of the dense operators: (sparse, dense).

@@ -55,6 +55,14 @@ impl SchurOperators {
         matches!(self, Sparse(_))
     }
 
+    /// The sparse solves.
+    pub fn solves(&self) -> Option<&Implicit> {
+        match self {
+            Sparse(solves) => Some(solves),
+            Whole(_) | Packed(_) => None,
+        }
+    }
+
     /// Whether only lower triangles are kept.
     pub fn is_packed(&self) -> bool {
         matches!(self, Packed(_))

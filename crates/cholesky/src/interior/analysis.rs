@@ -14,8 +14,32 @@ use base::linalg::dense::Dense;
 pub struct Analysed {
     /// With the interface last, for S as a dense matrix.
     pub dense: OnceLock<Arc<Analysis>>,
-    /// Of K_rr and K_II, for S and T as sparse solves.
-    pub sparse: OnceLock<[Analysis; 2]>,
+    /// For S and T as sparse solves.
+    pub sparse: OnceLock<SparseAnalysis>,
+}
+
+/// Analyses of K_rr and K_II.
+#[derive(Debug)]
+pub struct SparseAnalysis {
+    /// K_rr with the vertices and these averages as a border.
+    pub held: Analysis,
+    /// The dofs of each average.
+    pub averages: Vec<Vec<u32>>,
+    /// K_II.
+    pub interior: Analysis,
+}
+
+impl SparseAnalysis {
+    /// Entries of both factors.
+    pub fn entries(&self) -> usize {
+        let of = |a: &Analysis, keep| a.symbolic.factor_entries(keep);
+        of(&self.held, Keep::Boundary) + of(&self.interior, Keep::Interior)
+    }
+
+    /// Multiplications and additions of both factorisations.
+    pub fn flops(&self) -> f64 {
+        self.held.symbolic.flops() + self.interior.symbolic.flops()
+    }
 }
 
 /// The part of a factorisation that depends on the pattern of K alone: one analysis serves all matrices of this
@@ -28,6 +52,11 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// The fronts.
+    pub fn symbolic(&self) -> &Symbolic {
+        &self.symbolic
+    }
+
     /// The analysis with these fronts.
     pub fn new(symbolic: Symbolic) -> Analysis {
         Analysis {
@@ -42,6 +71,14 @@ impl Analysis {
     /// A pivot that vanishes.
     pub fn solver(&self, k: &Csr) -> Result<(PartialCholesky, Dense), SingularInterior> {
         PartialCholesky::inside(k, &self.symbolic, self.inside())
+    }
+
+    /// Factors the interior of `k` with the rows of the interface; returns S (both triangles), too.
+    ///
+    /// # Errors
+    /// A pivot that vanishes.
+    pub fn bordered(&self, k: &Csr) -> Result<(PartialCholesky, Dense), SingularInterior> {
+        PartialCholesky::new(k, self.symbolic.clone())
     }
 
     /// Eliminates the interior; returns the factor and S (both triangles, in the order of the interface).

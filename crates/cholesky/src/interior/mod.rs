@@ -17,7 +17,7 @@ use super::symbolic::{Keep, Symbolic};
 use base::linalg::csr::Csr;
 use base::linalg::dense::Dense;
 
-pub use analysis::{Analysed, Analysis};
+pub use analysis::{Analysed, Analysis, SparseAnalysis};
 pub use factor::InteriorFactor;
 
 /// Why a matrix could not be factored.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::feti::interface::entities::AverageKind;
+use crate::feti::subdomain::scaled::ScaledSubdomain;
 use crate::feti::subdomain::which::Operator;
 use crate::matrices::{distance, grid_laplacian, random};
 
@@ -32,8 +33,10 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
     let mut f = vec![0.0; k.n()];
     k.mul(&u, &mut f);
     let (work, g) = local.condense_many(&[&f]).remove(0);
+    let local = ScaledSubdomain::new(Arc::new(local), 1.0);
     let mut p = vec![0.0; 2];
-    local.gamma.psi_transpose(&g, &mut p);
+    let half = local.begin(&g, &mut p);
+    let (local, whole) = (local.kind(), &local);
     let s = |i, j| local.sigma.get(i, j);
     let det = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
     let c = [
@@ -41,10 +44,13 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
         (s(0, 0) * p[1] - s(1, 0) * p[0]) / det,
     ];
     let mut u_gamma = vec![0.0; local.gamma.n_gamma()];
-    let n_delta = local.gamma.n_delta;
-    local.apply_one(Operator::T, &g, &mut u_gamma);
-    assert_eq!(local.gamma.n_delta, n_delta);
-    local.gamma.add_psi(&c, &mut u_gamma);
+    assert_eq!(whole.in_halves(), form == OperatorForm::Implicit);
+    if whole.in_halves() {
+        whole.finish(half, &c, &mut u_gamma);
+    } else {
+        local.apply_one(Operator::T, &g, &mut u_gamma);
+        whole.add_psi(&c, &mut u_gamma);
+    }
     let back = &local.recover_many(&[(&work, &u_gamma)], &[1.0])[0];
     let error = distance(back, &u);
     assert!(error < 1e-12, "error {error:.1e}");
@@ -131,7 +137,44 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
         let far = distance(a, b);
         assert!(far < 1e-12, "{far:.1e}");
     };
-    close(&dense.gamma.psi.data, &sparse.gamma.psi.data);
+    let columns = Dense {
+        rows: dense.gamma.n_gamma(),
+        cols: 11,
+        data: random(11 * dense.gamma.n_gamma(), 4),
+    };
+    let mut stored = make(OperatorForm::Implicit).expect("held by vertices");
+    stored.store_psi();
+    let [dense, sparse, stored] =
+        [dense, sparse, stored].map(|local| ScaledSubdomain::new(Arc::new(local), 1.0));
+    assert!(sparse.in_halves() && !stored.in_halves());
+    close(&dense.psi().data, &sparse.psi().data);
+    close(&dense.psi().data, &stored.psi().data);
+    // Ψᵀ V, and T V + Ψ C, of several vectors and of one.
+    let n_pi = dense.gamma().n_pi();
+    let c = Dense {
+        rows: n_pi,
+        cols: 11,
+        data: random(11 * n_pi, 6),
+    };
+    let both = |local: &ScaledSubdomain| {
+        let (mut p, mut y) = (Dense::zeros(n_pi, 11), columns.clone());
+        let half = local.begin_many(&columns, &mut p);
+        local.finish_many(half, &columns, &c, &mut y);
+        [p.data, y.data].concat()
+    };
+    close(&both(&dense), &both(&sparse));
+    close(&both(&dense), &both(&stored));
+    let (mut p, mut y) = (c.clone(), columns.clone());
+    for k in 0..11 {
+        let half = sparse.begin(columns.col(k), p.col_mut(k));
+        sparse.finish(half, c.col(k), y.col_mut(k));
+    }
+    close(&both(&dense), &[p.data, y.data].concat());
+    let (mut ours, mut theirs) = (columns.clone(), columns);
+    sparse.add_psi(c.col(0), ours.col_mut(0));
+    dense.add_psi(c.col(0), theirs.col_mut(0));
+    close(&ours.data, &theirs.data);
+    let (dense, sparse) = (dense.kind(), sparse.kind());
     close(&dense.sigma.data, &sparse.sigma.data);
     close(&dense.s().data, &sparse.s().data);
     let t = |local: &LocalProblem| {
@@ -140,7 +183,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
         let entries = all.map(|(i, j)| local.entry(Operator::T, i, j));
         entries.collect::<Vec<_>>()
     };
-    close(&t(&dense), &t(&sparse));
+    close(&t(dense), &t(sparse));
     // More columns than are processed side by side, and a load.
     let v = Dense {
         rows: dense.gamma.n_gamma(),

@@ -1,0 +1,275 @@
+//! K_rr of one subdomain, factored with the vertices and the averages as a border:
+//!
+//! ```text
+//!     [ K_rr  K_rv  Q ]        eliminate r        [ S_vv  Aᵀ ]
+//!     [ K_vr  K_vv  0 ]       ------------>       [ A     −M ]       A = −Qᵀ K_rr⁻¹ K_rv,   M = Qᵀ K_rr⁻¹ Q
+//!     [ Qᵀ    0     0 ]
+//! ```
+//!
+//! The columns of Q are the unit vectors behind the averages, the unknowns of the last row the multipliers μ that hold
+//! them. One factorisation has all that the coarse functions need: a function with the values u of the vertices and D a
+//! of the averages has μ = M⁻¹ (A u − D a), and follows on r by the way back alone.
+
+use super::basis::Basis;
+use base::linalg::csr::Csr;
+use base::linalg::dense::{self, Dense, Scratch};
+use cholesky::dissection::nested_dissection;
+use cholesky::interior::Analysis;
+use cholesky::lanes::LANES;
+use cholesky::multifrontal::PartialCholesky;
+use cholesky::symbolic::Symbolic;
+
+/// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
+/// subdomain then.
+const WEAKLY_HELD: f64 = 1e-6;
+
+/// A unit vector behind an average: local dofs and entries.
+pub type AverageVector = (Vec<u32>, Vec<f64>);
+
+/// The unit vectors behind the averages of `basis` on the dofs `delta`.
+pub fn vectors(delta: &[u32], basis: &Basis) -> Vec<AverageVector> {
+    let vectors = basis.vectors(delta.len());
+    let of = |(q, at): (&Vec<f64>, &[usize])| at.iter().map(|&i| (delta[i], q[i])).unzip();
+    vectors.iter().zip(basis.supports()).map(of).collect()
+}
+
+/// The factor of K_rr with its border.
+#[derive(Debug)]
+pub struct Held {
+    factor: PartialCholesky,
+    /// Local dofs of Δ, and of the vertices.
+    delta: Vec<u32>,
+    vertices: Vec<u32>,
+    /// D, the norms of the averages' coefficients.
+    norms: Vec<f64>,
+    /// A, averages × vertices.
+    a: Dense,
+    /// L with M = L Lᵀ.
+    m: Dense,
+}
+
+impl Held {
+    /// The analysis of a pattern with these vertices, and averages over these dofs.
+    pub fn analysis<'a>(
+        k: &Csr,
+        vertices: &[u32],
+        averages: impl Iterator<Item = &'a [u32]>,
+        coordinates: Option<&[[f64; 3]]>,
+    ) -> Symbolic {
+        let one = |dofs: &[u32]| (dofs.to_vec(), vec![1.0; dofs.len()]);
+        let averages: Vec<AverageVector> = averages.map(one).collect();
+        // Averages do not change the order in which r is eliminated.
+        let order = nested_dissection(k, &k.others(vertices), coordinates);
+        let border = border(k, vertices, averages.len());
+        Symbolic::with_supernodes(&bordered(k, &averages), &border, &order)
+    }
+
+    /// Factors `k` with the analysis of its pattern; returns Σ = [S_vv + Aᵀ M⁻¹ A, −Aᵀ M⁻¹ D; ·, D M⁻¹ D], too. `None`
+    /// if the vertices do not hold the subdomain, or if they determine an average.
+    pub fn new(
+        k: &Csr,
+        interface: [&[u32]; 2],
+        basis: &Basis,
+        averages: &[AverageVector],
+        analysis: &Analysis,
+    ) -> Option<(Held, Dense)> {
+        let k = bordered(k, averages);
+        let (factor, s) = analysis.bordered(&k).ok()?;
+        if factor.weakest_pivot(&k) <= WEAKLY_HELD {
+            return None;
+        }
+        let [delta, vertices] = interface.map(<[u32]>::to_vec);
+        let (n_v, n_q) = (vertices.len(), averages.len());
+        let a = Dense::from_fn(n_q, n_v, |i, j| s.get(n_v + i, j));
+        let mut m = Dense::from_fn(n_q, n_q, |i, j| -s.get(n_v + i, n_v + j));
+        dense::cholesky(m.view_mut(), &mut Scratch::default()).ok()?;
+        let norms = (0..n_q).map(|i| basis.factor(i)).collect();
+        let held = Held {
+            factor,
+            delta,
+            vertices,
+            norms,
+            a,
+            m,
+        };
+        let mu = held.multipliers();
+        let mut sigma = Dense::zeros(n_v + n_q, n_v + n_q);
+        let mut of_vertices = Dense::zeros(n_v, n_v + n_q);
+        let transposed = held.a.view().transpose();
+        dense::multiply(of_vertices.view_mut(), false, 1.0, transposed, mu.view());
+        for j in 0..n_v + n_q {
+            for i in 0..n_v {
+                let own = if j < n_v { s.get(i, j) } else { 0.0 };
+                sigma.set(i, j, own + of_vertices.get(i, j));
+            }
+            for i in 0..n_q {
+                sigma.set(n_v + i, j, -held.norms[i] * mu.get(i, j));
+            }
+        }
+        sigma.symmetrise();
+        Some((held, sigma))
+    }
+
+    /// μ of every coarse function, a column for each: M⁻¹ [A, −D].
+    fn multipliers(&self) -> Dense {
+        let (n_v, n_q) = (self.vertices.len(), self.norms.len());
+        let mut mu = Dense::zeros(n_q, n_v + n_q);
+        mu.data[..n_q * n_v].copy_from_slice(&self.a.data);
+        (0..n_q).for_each(|i| mu.set(i, n_v + i, -self.norms[i]));
+        self.solve_m(mu)
+    }
+
+    /// M⁻¹ x.
+    fn solve_m(&self, mut x: Dense) -> Dense {
+        dense::solve_lower(self.m.view(), x.view_mut());
+        dense::solve_lower_transpose(self.m.view(), x.view_mut());
+        x
+    }
+
+    /// Number of dofs of the subdomain.
+    fn n(&self) -> usize {
+        self.factor.n() - self.norms.len()
+    }
+
+    /// The way forward for loads on Γ = [Δ, vertices]: what [`finish`](Self::finish) goes on with, and Ψᵀ v.
+    pub fn begin(&self, v: &[&[f64]]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let load = |v: &&[f64]| {
+            let mut x = vec![0.0; self.factor.n()];
+            let on_delta = self.delta.iter().zip(*v);
+            on_delta.for_each(|(&i, v)| x[i as usize] = *v);
+            x
+        };
+        let mut x: Vec<Vec<f64>> = v.iter().map(load).collect();
+        match &mut x[..] {
+            [one] => self.factor.forward(one),
+            several => several
+                .chunks_mut(LANES)
+                .for_each(|x| self.factor.forward_many(x)),
+        }
+        let values = |(x, v): (&Vec<f64>, &&[f64])| {
+            // What the load leaves at the averages is −Qᵀ K_rr⁻¹ v.
+            let mu = self.solve_m(column(&x[self.n()..]));
+            let vertices = self.vertices.iter().zip(&v[self.delta.len()..]);
+            let mut p: Vec<f64> = vertices.map(|(&i, v)| x[i as usize] + v).collect();
+            self.a.add_mul_transpose(&mu.data, &mut p);
+            p.extend(mu.data.iter().zip(&self.norms).map(|(mu, d)| -d * mu));
+            p
+        };
+        let p = x.iter().zip(v).map(values).collect();
+        (x, p)
+    }
+
+    /// T v + Ψ c on Δ, from what [`begin`](Self::begin) has left of v.
+    pub fn finish(&self, mut x: Vec<Vec<f64>>, c: &[&[f64]]) -> Vec<Vec<f64>> {
+        let (n, n_v) = (self.n(), self.vertices.len());
+        for (x, c) in x.iter_mut().zip(c) {
+            let (vertices, averages) = c.split_at(n_v);
+            let mut mu = vec![0.0; averages.len()];
+            self.a.add_mul(vertices, &mut mu);
+            for (i, mu) in mu.iter_mut().enumerate() {
+                *mu -= self.norms[i] * averages[i] + x[n + i];
+            }
+            x[n..].copy_from_slice(&self.solve_m(column(&mu)).data);
+            let at = self.vertices.iter().zip(vertices);
+            at.for_each(|(&i, c)| x[i as usize] = *c);
+        }
+        match &mut x[..] {
+            [one] => self.factor.backward(one),
+            several => several
+                .chunks_mut(LANES)
+                .for_each(|x| self.factor.backward_many(x)),
+        }
+        let on_delta = |x: &Vec<f64>| self.delta.iter().map(|&i| x[i as usize]).collect();
+        x.iter().map(on_delta).collect()
+    }
+
+    /// T v on Δ for each of `v`, of which the entries on Δ count.
+    pub fn t(&self, v: &[&[f64]]) -> Vec<Vec<f64>> {
+        let n = self.delta.len();
+        let zero = vec![0.0; self.vertices.len() + self.norms.len()];
+        let load = |v: &&[f64]| [&v[..n], &zero[..self.vertices.len()]].concat();
+        let loads: Vec<Vec<f64>> = v.iter().map(load).collect();
+        let loads: Vec<&[f64]> = loads.iter().map(Vec::as_slice).collect();
+        self.finish(self.begin(&loads).0, &vec![&zero[..]; v.len()])
+    }
+
+    /// Ψ on Δ.
+    pub fn psi(&self) -> Dense {
+        let n_pi = self.vertices.len() + self.norms.len();
+        let unit = |p: usize| {
+            let mut c = vec![0.0; n_pi];
+            c[p] = 1.0;
+            c
+        };
+        let units: Vec<Vec<f64>> = (0..n_pi).map(unit).collect();
+        let units: Vec<&[f64]> = units.iter().map(Vec::as_slice).collect();
+        let mut psi = Dense::zeros(self.delta.len(), 0);
+        for some in units.chunks(LANES) {
+            let nothing = vec![self.nothing(); some.len()];
+            let columns = self.finish(nothing, some);
+            columns.iter().for_each(|column| psi.data.extend(column));
+        }
+        psi.cols = n_pi;
+        psi
+    }
+
+    /// An empty load, as [`begin`](Self::begin) leaves it.
+    pub fn nothing(&self) -> Vec<f64> {
+        vec![0.0; self.factor.n()]
+    }
+
+    /// Bytes of the factor, and of the dense parts.
+    pub fn bytes(&self) -> (usize, usize) {
+        let dense = self.a.data.len() + self.m.data.len();
+        (self.factor.bytes(), 8 * dense)
+    }
+}
+
+/// A matrix of one column.
+fn column(x: &[f64]) -> Dense {
+    Dense {
+        rows: x.len(),
+        cols: 1,
+        data: x.to_vec(),
+    }
+}
+
+/// The dofs of the border: the vertices, and a dof behind those of the subdomain for each average.
+fn border(k: &Csr, vertices: &[u32], averages: usize) -> Vec<u32> {
+    let multipliers = k.n() as u32..(k.n() + averages) as u32;
+    vertices.iter().copied().chain(multipliers).collect()
+}
+
+/// [K, Q; Qᵀ, 0].
+fn bordered(k: &Csr, averages: &[AverageVector]) -> Csr {
+    let n = k.n();
+    let mut columns: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
+    for (q, (dofs, entries)) in averages.iter().enumerate() {
+        for (&i, &v) in dofs.iter().zip(entries) {
+            columns[i as usize].push(((n + q) as u32, v));
+        }
+    }
+    let more: usize = averages.iter().map(|a| a.0.len()).sum();
+    let mut out = Csr {
+        row_ptr: Vec::with_capacity(n + averages.len() + 1),
+        col: Vec::with_capacity(k.nnz() + 2 * more),
+        val: Vec::with_capacity(k.nnz() + 2 * more),
+    };
+    out.row_ptr.push(0);
+    for (i, columns) in columns.iter().enumerate() {
+        let (col, val) = k.row(i);
+        out.col.extend_from_slice(col);
+        out.val.extend_from_slice(val);
+        out.col.extend(columns.iter().map(|c| c.0));
+        out.val.extend(columns.iter().map(|c| c.1));
+        out.row_ptr.push(out.col.len());
+    }
+    for (dofs, entries) in averages {
+        let mut row: Vec<(u32, f64)> = dofs.iter().copied().zip(entries.iter().copied()).collect();
+        row.sort_unstable_by_key(|e| e.0);
+        out.col.extend(row.iter().map(|e| e.0));
+        out.val.extend(row.iter().map(|e| e.1));
+        out.row_ptr.push(out.col.len());
+    }
+    out
+}
