@@ -15,8 +15,8 @@ env=$folder/env build=$folder/build
 
 # Debian's dolfinx has PETSc 3.18; Fortran's module, petsc4py and MFEM are for 32-bit indices.
 skip=(--skip dolfinx --skip random)
-[ "$bits" = 32 ] || for name in fortran petsc4py python py_ a_load_loop scikit_fem mfem mortar::constant mortar::examples \
-    mortar::mortars_are mortar::rows_with; do
+[ "$bits" = 32 ] || for name in fortran petsc4py python py_ a_load_loop scikit_fem mfem \
+    mortar::constant mortar::examples mortar::mortars_are mortar::rows_with; do
     skip+=(--skip "$name")
 done
 

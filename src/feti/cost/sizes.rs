@@ -97,8 +97,11 @@ impl ProblemSizes {
             let n_gamma = n_delta + jump.primal[j].len() as f64;
             let n_pi = (jump.primal[j].len() + jump.averages[j].len()) as f64;
             sums[0] += 8.0 * entries as f64;
-            // Ψ and Σ; S and T.
-            sums[1] += 8.0 * (n_delta * n_pi + n_pi.powi(2));
+            // Σ; Ψ, unless sparse solves stand for it; S and T.
+            sums[1] += 8.0 * n_pi.powi(2);
+            if *form == OperatorForm::Explicit || kind.copies > 1 {
+                sums[1] += 8.0 * n_delta * n_pi;
+            }
             match form {
                 OperatorForm::Explicit => sums[1] += 8.0 * (n_gamma.powi(2) + n_delta.powi(2)),
                 OperatorForm::Implicit => sums[5] += 1.0,
