@@ -32,12 +32,8 @@ pub(super) const BDDC: [OptionSet; 5] = [
     },
     OptionSet {
         when: When::ElasticSpace,
-        // Averages of all rigid motions, and those over edges, take fewer iterations, and more than that in the coarse
-        // problem.
-        options: &[
-            ("pc_bddc_use_nnsp", "false"),
-            ("pc_bddc_use_edges", "false"),
-        ],
+        // Averages of all rigid motions take fewer iterations, and more than that in the coarse problem.
+        options: &[("pc_bddc_use_nnsp", "false")],
     },
     OptionSet {
         when: When::Rescue,
