@@ -53,9 +53,7 @@ static void Tangent(PLACE, PetscReal shift, const PetscReal x[], PetscInt numC, 
 }
 
 static PetscErrorCode Motions(DM dm, PetscInt from, PetscInt to, MatNullSpace *space)
-{
-  return DMPlexCreateRigidBody(dm, from, space);
-}
+{ return DMPlexCreateRigidBody(dm, from, space); }
 
 int main(int argc, char **argv)
 {
@@ -65,17 +63,14 @@ int main(int argc, char **argv)
   DMLabel        sides;
   SNES           snes;
   Vec            u;
-  PetscInt       left = 4, faces[] = {24, 6};
-  PetscReal      size, upper[] = {4, 1};
+  PetscInt       left = 4;
+  PetscReal      size;
   PetscScalar    load = 0.002;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-#if PETSC_VERSION_GE(3, 22, 0)
-  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, upper, NULL, PETSC_TRUE, 0, PETSC_TRUE,
-                                &dm));
-#else
-  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, upper, NULL, PETSC_TRUE, &dm));
-#endif
+  PetscCall(PetscOptionsInsertString(NULL, "-dm_plex_simplex 0 -dm_plex_box_faces 24,6 -dm_plex_box_upper 4,1"));
+  PetscCall(DMCreate(PETSC_COMM_WORLD, &dm));
+  PetscCall(DMSetType(dm, DMPLEX));
   PetscCall(DMSetFromOptions(dm));
   PetscCall(PetscFECreateLagrange(PETSC_COMM_WORLD, 2, 2, PETSC_FALSE, 1, PETSC_DEFAULT, &fe));
   PetscCall(DMAddField(dm, NULL, (PetscObject)fe));
@@ -87,7 +82,11 @@ int main(int argc, char **argv)
   PetscCall(DMGetLabel(dm, "Face Sets", &sides));
   PetscCall(DMAddBoundary(dm, DM_BC_ESSENTIAL, "left", sides, 1, &left, 0, 0, NULL, NULL, NULL, NULL, NULL));
   PetscCall(DMSetNearNullSpaceConstructor(dm, 0, Motions));
+#if PETSC_VERSION_LT(3, 21, 0)
   PetscCall(DMPlexSetSNESLocalFEM(dm, NULL, NULL, NULL));
+#else
+  PetscCall(DMPlexSetSNESLocalFEM(dm, PETSC_FALSE, NULL));
+#endif
   PetscCall(SNESCreate(PETSC_COMM_WORLD, &snes));
   PetscCall(SNESSetDM(snes, dm));
   PetscCall(SNESSetFromOptions(snes));
