@@ -10,13 +10,10 @@ use std::collections::BTreeSet;
 use super::classes::InterfaceClass;
 use super::motions::NearKernels;
 use super::parts::TornSubdomain;
-use super::rigid_constraints::{norm, same_node, ConstraintContext, Span};
+use super::rigid_constraints::{norm, same_node, ConstraintContext, Span, SEEN};
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::cost::forms::is_short;
-
-/// A vertex counts if it detects at least this much of a motion (of order one) that those before it do not detect.
-const SEEN: f64 = 0.1;
 
 impl NearKernels {
     /// Adds to the dofs `nodes` of every local subdomain that are primal beside the vertices of `classes`.

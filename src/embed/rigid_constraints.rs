@@ -20,9 +20,9 @@ use crate::substructures::EntityKind;
 use parallel::exchange::exchange;
 use petsc::Session;
 
-/// An average counts as a constraint if it detects at least this much of a motion (of order one) that the
+/// An average or a vertex counts as a constraint if it detects at least this much of a motion (of order one) that the
 /// constraints before it do not detect.
-const SEEN: f64 = 0.1;
+pub(super) const SEEN: f64 = 0.1;
 
 /// A motion of the face is poorly detected if no constraint sees this fraction of its largest value. Then one more node
 /// is constrained.

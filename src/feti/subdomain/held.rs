@@ -40,12 +40,10 @@ pub struct Held {
     /// Local dofs of Δ, and of the vertices.
     delta: Vec<u32>,
     vertices: Vec<u32>,
-    /// D, the norms of the averages' coefficients.
-    norms: Vec<f64>,
-    /// A, averages × vertices.
-    a: Dense,
-    /// L with M = L Lᵀ.
-    m: Dense,
+    /// M⁻¹.
+    m_inverse: Dense,
+    /// μ of every coarse function, a column for each: M⁻¹ [A, −D].
+    mu: Dense,
 }
 
 impl Held {
@@ -82,53 +80,38 @@ impl Held {
         let (n_v, n_q) = (vertices.len(), averages.len());
         let a = Dense::from_fn(n_q, n_v, |i, j| s.get(n_v + i, j));
         let mut m = Dense::from_fn(n_q, n_q, |i, j| -s.get(n_v + i, n_v + j));
-        dense::cholesky(m.view_mut(), &mut Scratch::default()).ok()?;
-        let norms = (0..n_q).map(|i| basis.factor(i)).collect();
+        let mut scratch = Scratch::default();
+        dense::cholesky(m.view_mut(), &mut scratch).ok()?;
+        let m_inverse = dense::inverse_from_cholesky(m.view(), &mut scratch);
+        // D has the norms of the averages' coefficients.
+        let mut right = Dense::zeros(n_q, n_v + n_q);
+        right.data[..n_q * n_v].copy_from_slice(&a.data);
+        (0..n_q).for_each(|i| right.set(i, n_v + i, -basis.factor(i)));
+        let mut mu = Dense::zeros(n_q, n_v + n_q);
+        dense::multiply(mu.view_mut(), false, 1.0, m_inverse.view(), right.view());
+        // Σ = [A, −D]ᵀ M⁻¹ [A, −D], and S_vv.
+        let mut sigma = Dense::zeros(n_v + n_q, n_v + n_q);
+        let transposed = right.view().transpose();
+        dense::multiply(sigma.view_mut(), false, 1.0, transposed, mu.view());
+        for j in 0..n_v {
+            for i in 0..n_v {
+                sigma.set(i, j, sigma.get(i, j) + s.get(i, j));
+            }
+        }
+        sigma.symmetrise();
         let held = Held {
             factor,
             delta,
             vertices,
-            norms,
-            a,
-            m,
+            m_inverse,
+            mu,
         };
-        let mu = held.multipliers();
-        let mut sigma = Dense::zeros(n_v + n_q, n_v + n_q);
-        let mut of_vertices = Dense::zeros(n_v, n_v + n_q);
-        let transposed = held.a.view().transpose();
-        dense::multiply(of_vertices.view_mut(), false, 1.0, transposed, mu.view());
-        for j in 0..n_v + n_q {
-            for i in 0..n_v {
-                let own = if j < n_v { s.get(i, j) } else { 0.0 };
-                sigma.set(i, j, own + of_vertices.get(i, j));
-            }
-            for i in 0..n_q {
-                sigma.set(n_v + i, j, -held.norms[i] * mu.get(i, j));
-            }
-        }
-        sigma.symmetrise();
         Some((held, sigma))
-    }
-
-    /// μ of every coarse function, a column for each: M⁻¹ [A, −D].
-    fn multipliers(&self) -> Dense {
-        let (n_v, n_q) = (self.vertices.len(), self.norms.len());
-        let mut mu = Dense::zeros(n_q, n_v + n_q);
-        mu.data[..n_q * n_v].copy_from_slice(&self.a.data);
-        (0..n_q).for_each(|i| mu.set(i, n_v + i, -self.norms[i]));
-        self.solve_m(mu)
-    }
-
-    /// M⁻¹ x.
-    fn solve_m(&self, mut x: Dense) -> Dense {
-        dense::solve_lower(self.m.view(), x.view_mut());
-        dense::solve_lower_transpose(self.m.view(), x.view_mut());
-        x
     }
 
     /// Number of dofs of the subdomain.
     fn n(&self) -> usize {
-        self.factor.n() - self.norms.len()
+        self.factor.n() - self.mu.rows
     }
 
     /// The way forward for loads on Γ = [Δ, vertices]: what [`finish`](Self::finish) goes on with, and Ψᵀ v.
@@ -147,12 +130,11 @@ impl Held {
                 .for_each(|x| self.factor.forward_many(x)),
         }
         let values = |(x, v): (&Vec<f64>, &&[f64])| {
-            // What the load leaves at the averages is −Qᵀ K_rr⁻¹ v.
-            let mu = self.solve_m(column(&x[self.n()..]));
             let vertices = self.vertices.iter().zip(&v[self.delta.len()..]);
             let mut p: Vec<f64> = vertices.map(|(&i, v)| x[i as usize] + v).collect();
-            self.a.add_mul_transpose(&mu.data, &mut p);
-            p.extend(mu.data.iter().zip(&self.norms).map(|(mu, d)| -d * mu));
+            p.resize(self.mu.cols, 0.0);
+            // What the load leaves at the averages is −Qᵀ K_rr⁻¹ v.
+            self.mu.add_mul_transpose(&x[self.n()..], &mut p);
             p
         };
         let p = x.iter().zip(v).map(values).collect();
@@ -161,16 +143,14 @@ impl Held {
 
     /// T v + Ψ c on Δ, from what [`begin`](Self::begin) has left of v.
     pub fn finish(&self, mut x: Vec<Vec<f64>>, c: &[&[f64]]) -> Vec<Vec<f64>> {
-        let (n, n_v) = (self.n(), self.vertices.len());
+        let n = self.n();
         for (x, c) in x.iter_mut().zip(c) {
-            let (vertices, averages) = c.split_at(n_v);
-            let mut mu = vec![0.0; averages.len()];
-            self.a.add_mul(vertices, &mut mu);
-            for (i, mu) in mu.iter_mut().enumerate() {
-                *mu -= self.norms[i] * averages[i] + x[n + i];
-            }
-            x[n..].copy_from_slice(&self.solve_m(column(&mu)).data);
-            let at = self.vertices.iter().zip(vertices);
+            let mut mu = vec![0.0; self.mu.rows];
+            self.m_inverse.add_mul(&x[n..], &mut mu);
+            mu.iter_mut().for_each(|mu| *mu = -*mu);
+            self.mu.add_mul(c, &mut mu);
+            x[n..].copy_from_slice(&mu);
+            let at = self.vertices.iter().zip(*c);
             at.for_each(|(&i, c)| x[i as usize] = *c);
         }
         match &mut x[..] {
@@ -186,7 +166,7 @@ impl Held {
     /// T v on Δ for each of `v`, of which the entries on Δ count.
     pub fn t(&self, v: &[&[f64]]) -> Vec<Vec<f64>> {
         let n = self.delta.len();
-        let zero = vec![0.0; self.vertices.len() + self.norms.len()];
+        let zero = vec![0.0; self.mu.cols];
         let load = |v: &&[f64]| [&v[..n], &zero[..self.vertices.len()]].concat();
         let loads: Vec<Vec<f64>> = v.iter().map(load).collect();
         let loads: Vec<&[f64]> = loads.iter().map(Vec::as_slice).collect();
@@ -195,7 +175,7 @@ impl Held {
 
     /// Ψ on Δ.
     pub fn psi(&self) -> Dense {
-        let n_pi = self.vertices.len() + self.norms.len();
+        let n_pi = self.mu.cols;
         let unit = |p: usize| {
             let mut c = vec![0.0; n_pi];
             c[p] = 1.0;
@@ -220,17 +200,8 @@ impl Held {
 
     /// Bytes of the factor, and of the dense parts.
     pub fn bytes(&self) -> (usize, usize) {
-        let dense = self.a.data.len() + self.m.data.len();
+        let dense = self.m_inverse.data.len() + self.mu.data.len();
         (self.factor.bytes(), 8 * dense)
-    }
-}
-
-/// A matrix of one column.
-fn column(x: &[f64]) -> Dense {
-    Dense {
-        rows: x.len(),
-        cols: 1,
-        data: x.to_vec(),
     }
 }
 
