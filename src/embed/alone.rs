@@ -10,10 +10,11 @@ use std::collections::BTreeSet;
 use super::classes::InterfaceClass;
 use super::motions::NearKernels;
 use super::parts::TornSubdomain;
-use super::rigid_constraints::{norm, same_node, ConstraintContext, Span, SEEN};
+use super::rigid_constraints::{moves_most, norm, ConstraintContext, Span, SEEN};
 use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::cost::forms::is_short;
+use base::linalg::sorted::distinct;
 
 impl NearKernels {
     /// Adds to the dofs `nodes` of every local subdomain that are primal beside the vertices of `classes`.
@@ -48,15 +49,14 @@ impl NearKernels {
             let vertices = vertices.flat_map(|c| &c.dofs).chain(&nodes[j]);
             vertices.for_each(|&i| span.add(row(i), SEEN));
             let faces = shared.filter(|c| c.sharers.len() == 2);
-            let dofs: Vec<u32> = faces.flat_map(|c| &c.dofs).copied().collect();
+            let dofs = distinct(faces.flat_map(|c| &c.dofs).copied());
             while span.rank() < free.len() {
-                let seen = |i: &u32| norm(&span.rest(row(*i)));
-                let best = dofs.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)));
-                let Some(&best) = best.filter(|i| seen(i) > SEEN) else {
+                let seen = |i: u32| norm(&span.rest(row(i)));
+                let best = moves_most(torn, part, &dofs, seen);
+                let Some(best) = best.filter(|node| node.iter().any(|&i| seen(i) > SEEN)) else {
                     break;
                 };
-                let node = dofs.iter().filter(|&&i| same_node(torn, part, i, best));
-                for &i in node {
+                for &i in best {
                     span.add(row(i), SEEN);
                     nodes[j].insert(i);
                 }

@@ -31,6 +31,9 @@ const WELL_SEEN: f64 = 0.5;
 /// Values below this count as zero.
 pub(super) const LOOSE: f64 = 1e-6;
 
+/// Squares of motions that differ by less than this fraction are alike.
+const ALIKE: f64 = 1e-6;
+
 /// With more motions than this, they are not taken for rigid body motions.
 const MANY: usize = 12;
 
@@ -93,12 +96,13 @@ impl NearKernels {
                 }
                 let extra = &mut nodes[j];
                 while span.rank() < all.rank() {
-                    let seen = |i: &u32| norm(&span.rest(motions.row(*i).to_vec()));
-                    let best = dofs.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)));
-                    let Some(best) = best.filter(|i| seen(i) > LOOSE) else {
+                    let seen = |i: u32| norm(&span.rest(motions.row(i).to_vec()));
+                    let best = moves_most(torn, part, dofs, seen);
+                    let Some(best) = best.filter(|node| node.iter().any(|&i| seen(i) > LOOSE))
+                    else {
                         break;
                     };
-                    for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, *best)) {
+                    for &i in best {
                         span.add(motions.row(i).to_vec(), LOOSE);
                         held.push(motions.row(i).to_vec());
                         extra.insert(i);
@@ -109,8 +113,9 @@ impl NearKernels {
                     true => None,
                     false => badly_seen(&motions, self.components, held),
                 };
-                while let Some(best) = poorly(&held) {
-                    for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, best)) {
+                while let Some(moves) = poorly(&held) {
+                    let moves = |i: u32| moves.along(motions.row(i)).abs();
+                    for &i in moves_most(torn, part, dofs, moves).unwrap_or_default() {
                         held.push(motions.row(i).to_vec());
                         extra.insert(i);
                     }
@@ -171,9 +176,18 @@ impl SharedMotions<'_> {
     }
 }
 
-/// Finds the motion that the constraints `held` detect worst. If they detect it poorly, returns the dof of `dofs`
-/// that moves most in it. Applies only if rotations are known.
-fn badly_seen(motions: &SharedMotions, components: usize, held: &[Vec<f64>]) -> Option<u32> {
+/// A combination of motions, by its coefficients.
+struct Mixed(Vec<f64>);
+
+impl Mixed {
+    /// Its value where those of all motions are `row`.
+    fn along(&self, row: &[f64]) -> f64 {
+        row.iter().zip(&self.0).map(|(r, c)| r * c).sum()
+    }
+}
+
+/// The motion that the constraints `held` detect worst, if they detect it poorly. Applies only if rotations are known.
+fn badly_seen(motions: &SharedMotions, components: usize, held: &[Vec<f64>]) -> Option<Mixed> {
     let (dofs, k) = (motions.dofs, motions.rows.first().map_or(0, Vec::len));
     if k <= components || k > MANY {
         return None;
@@ -205,13 +219,30 @@ fn badly_seen(motions: &SharedMotions, components: usize, held: &[Vec<f64>]) -> 
             .zip(motion)
             .for_each(|(w, m)| *w += weight * m);
     }
-    let moves = |i: &u32| seen(motions.row(*i), &worst).abs();
-    let best = *dofs.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)))?;
-    let most = held
-        .iter()
-        .map(|f| seen(f, &worst).abs())
-        .fold(0.0, f64::max);
-    (most < WELL_SEEN * moves(&best)).then_some(best)
+    let worst = Mixed(worst);
+    let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
+    let most = largest(&mut held.iter().map(|f| worst.along(f).abs()));
+    let moves = largest(&mut dofs.iter().map(|&i| worst.along(motions.row(i)).abs()));
+    (most < WELL_SEEN * moves).then_some(worst)
+}
+
+/// The dofs of the node that moves most, of the increasing local dofs `dofs`: the last one of those that move alike.
+/// `size` is the size of a dof's motion. The choice does not depend on the axes, so that copies of a subdomain in other
+/// places get the same nodes.
+pub(super) fn moves_most<'d>(
+    torn: &Torn,
+    part: &TornSubdomain,
+    dofs: &'d [u32],
+    size: impl Fn(u32) -> f64,
+) -> Option<&'d [u32]> {
+    let nodes: Vec<&[u32]> = dofs
+        .chunk_by(|&i, &j| torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize]))
+        .collect();
+    let square = |node: &&[u32]| node.iter().map(|&i| size(i).powi(2)).sum::<f64>();
+    let squares: Vec<f64> = nodes.iter().map(square).collect();
+    let most = squares.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let last = squares.iter().rposition(|s| *s >= (1.0 - ALIKE) * most);
+    last.map(|k| nodes[k])
 }
 
 /// Decisions that precede the choice of constraints.
@@ -258,9 +289,4 @@ impl Span {
 
 pub(super) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
-}
-
-/// Whether two local dofs are of one node.
-pub(super) fn same_node(torn: &Torn, part: &TornSubdomain, i: u32, j: u32) -> bool {
-    torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize])
 }

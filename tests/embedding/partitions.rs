@@ -123,6 +123,32 @@ fn subdomains_without_vertices() {
     }
 }
 
+/// Sectors of a ring are turned copies of each other: that which is held, those between, and that which ends.
+#[test]
+fn sectors_of_a_ring_share_factors() {
+    let scratch = Scratch::new("embed-ring");
+    let program = Program::linked("mpicc", &scratch, "tests/plugin/yardstick.c");
+    for problem in [
+        "-elastic -n 4,48 -box 1,8",
+        "-elastic -n 8,48 -box 2,8",
+        "-elastic -n 4,48,3 -box 1,8,1",
+        "-elastic -n 6,48,4 -box 2,8,1 -fetifeti_primal vertices,edges",
+        "-n 4,48,3 -box 1,8,1",
+    ] {
+        let across = if problem.contains("-box 2") { 2 } else { 1 };
+        for ranks in [1, 2] {
+            let options =
+                format!("-ring {problem} -operator capi -fetifeti_ksp_rtol 1e-10 -fetifeti_view");
+            let out = program.run(ranks, &options);
+            assert_eq!(out.code, 0, "{problem}: {}", out.all());
+            let residual: f64 = after(&out.stdout, "residual").expect("a residual");
+            assert!(residual <= 3e-8, "{problem}: {}", out.all());
+            let factored: usize = after(&out.stdout, "patterns analysed,").expect("a count");
+            assert!(factored <= across * (2 + ranks), "{problem}: {}", out.all());
+        }
+    }
+}
+
 /// A subdomain of one node lies between two others that meet there only. It holds neither of them to the other.
 #[test]
 fn a_node_is_no_hinge_of_a_body() {

@@ -66,15 +66,11 @@ fn multiples_are_found_and_other_matrices_are_not() {
             .val
             .iter_mut()
             .for_each(|v| *v *= 7.3);
-        // Stiffer by 1e-6 in one entry, symmetrically; one node moved by 1e-6.
+        // Stiffer by 1e-6 in one entry, symmetrically.
         let k = Arc::make_mut(&mut problem.local[5].k);
         k.val[0] *= 1.0 + 1e-6;
-        if let Some(places) = &mut problem.local[6].coordinates {
-            places[20][0] += 1e-6;
-            places[21][0] += 1e-6;
-        }
     });
     assert_eq!((all[3].first, all[4].first), (1, 1));
     assert!((all[3].factor - 7.3).abs() < 1e-12);
-    assert_eq!((all[5].first, all[6].first), (5, 6));
+    assert_eq!((all[5].first, all[6].first), (5, 1));
 }

@@ -19,12 +19,15 @@ const PHI: f64 = 3.7;
 const Q: Matrix = [[-0.8, 0.48, -0.36], [0.6, 0.64, -0.48], [0.0, 0.6, 0.8]];
 
 /// A subdomain of an elastic body that nothing holds, bent so that no axis is like another.
+#[derive(Clone)]
 struct Sample {
     k: Csr,
     places: Vec<[f64; 3]>,
     delta: Vec<u32>,
     vertices: Vec<u32>,
     averages: Vec<Vec<u32>>,
+    /// Rotations of each face about its middle: dofs and weights.
+    motions: Vec<Vec<(Vec<u32>, Vec<f64>)>>,
 }
 
 impl Sample {
@@ -71,8 +74,31 @@ impl Sample {
         let averages = (0..dim).flat_map(of);
         let averages =
             averages.map(|(face, c)| face.iter().map(|n| (dim * n + c) as u32).collect());
+        let rotations = |face: &Vec<usize>| {
+            let middle = [0, 1, 2].map(|d| {
+                let sum: f64 = face.iter().map(|n| places[dim * n][d]).sum();
+                sum / face.len() as f64
+            });
+            let axes: &[[usize; 2]] = if dim == 2 {
+                &[[0, 1]]
+            } else {
+                &[[0, 1], [1, 2], [2, 0]]
+            };
+            let rotation = |[a, b]: &[usize; 2]| {
+                let mut weights = vec![0.0; dim * face.len()];
+                for (k, n) in face.iter().enumerate() {
+                    let x = places[dim * n];
+                    weights[dim * k + a] = middle[*b] - x[*b];
+                    weights[dim * k + b] = x[*a] - middle[*a];
+                }
+                (dofs(face), weights)
+            };
+            axes.iter().map(rotation).collect()
+        };
+        let motions = open.iter().map(rotations).collect();
         Sample {
             k: Arc::unwrap_or_clone(sub.k),
+            motions,
             delta: dofs(&delta),
             vertices: dofs(&vertices),
             averages: averages.collect(),
@@ -81,13 +107,16 @@ impl Sample {
     }
 
     fn local(&self, k: &Csr, form: OperatorForm) -> LocalProblem {
-        let average = |dofs: &Vec<u32>| Average {
+        let average = |dofs: &Vec<u32>, weights| Average {
             kind: AverageKind::Mean,
             key: 0,
             dofs: dofs.clone(),
-            weights: None,
+            weights,
         };
-        let averages: Vec<Average> = self.averages.iter().map(average).collect();
+        let means = self.averages.iter().map(|dofs| average(dofs, None));
+        let motions = self.motions.iter().flatten();
+        let motions = motions.map(|(dofs, weights)| average(dofs, Some(weights.clone())));
+        let averages: Vec<Average> = means.chain(motions).collect();
         let averages: Vec<&Average> = averages.iter().collect();
         let condenser = Condenser::alone(Keep::Interior);
         let places = Some(&self.places[..]);
@@ -101,6 +130,23 @@ impl Sample {
             form,
         )
         .expect("a stiffness matrix")
+    }
+
+    /// Other rotations of the turned faces that see the same.
+    fn turned_motions(&self, turn: &Turn) -> Vec<Vec<(Vec<u32>, Vec<f64>)>> {
+        let mixed = |face: &Vec<(Vec<u32>, Vec<f64>)>| {
+            let row = |k: usize| {
+                let mut sum = vec![0.0; face[0].1.len()];
+                for (l, (_, weights)) in face.iter().enumerate() {
+                    let by = [1.0, -0.4, 0.3][(k + 2 * l) % 3];
+                    sum.iter_mut().zip(weights).for_each(|(s, w)| *s += by * w);
+                }
+                turn.forth(&mut sum);
+                (face[k].0.clone(), sum)
+            };
+            (0..face.len()).map(row).collect()
+        };
+        self.motions.iter().map(mixed).collect()
     }
 
     /// φ R K Rᵀ, entry by entry.
@@ -139,9 +185,21 @@ fn compare(dim: usize, q: Matrix, sample: &Sample, form: OperatorForm, pack: boo
     if pack {
         base.pack();
     }
-    let copy = ScaledSubdomain::turned(Arc::new(base), PHI, Turn::new(dim, q));
-    let turned = sample.turned(dim, &q);
-    let own = ScaledSubdomain::new(Arc::new(sample.local(&turned, form)), 1.0);
+    base.store_psi();
+    let (turn, turned) = (Turn::new(dim, q), sample.turned(dim, &q));
+    let other = Sample {
+        k: turned.clone(),
+        motions: sample.turned_motions(&turn),
+        ..sample.clone()
+    };
+    let mut own = other.local(&turned, form);
+    own.store_psi();
+    let own = ScaledSubdomain::new(Arc::new(own), 1.0);
+    let basis = own.gamma().basis.clone();
+    let base = Arc::new(base);
+    let before = ScaledSubdomain::new(base.clone(), 1.0);
+    assert!(turn.takes(sample.delta.len(), &before.gamma().basis, &basis));
+    let copy = ScaledSubdomain::turned(base, PHI, turn, basis);
     assert_eq!(copy.is_implicit(), own.is_implicit());
     assert_eq!(copy.gamma().interface, own.gamma().interface);
     let n_gamma = own.gamma().n_gamma();
@@ -207,9 +265,14 @@ fn a_turned_copy_has_the_operators_of_its_own_matrix() {
             compare(dim, q, &sample, form, false);
         }
         compare(dim, q, &sample, OperatorForm::Explicit, true);
+        let means = Sample {
+            motions: Vec::new(),
+            ..sample
+        };
+        compare(dim, q, &means, OperatorForm::Explicit, false);
         let without = Sample {
             averages: Vec::new(),
-            ..sample
+            ..means
         };
         compare(dim, q, &without, OperatorForm::Explicit, false);
     }
@@ -224,9 +287,12 @@ fn what_a_turned_copy_holds_itself_does_not_show() {
         sample.delta.append(&mut sample.vertices);
         sample.delta.sort_unstable();
         sample.averages.clear();
+        sample.motions.clear();
         compare(dim, q, &sample, OperatorForm::Explicit, false);
         let base = Arc::new(sample.local(&sample.k, OperatorForm::Explicit));
-        let copy = ScaledSubdomain::turned(base, PHI, Turn::new(dim, q));
+        let before = ScaledSubdomain::new(base.clone(), 1.0);
+        let basis = before.gamma().basis.clone();
+        let copy = ScaledSubdomain::turned(base, PHI, Turn::new(dim, q), basis);
         assert!(!copy.gamma().fixing.is_empty());
         // u = T S u + Ψ p(u), with p(u) the values of the fixing dofs.
         let u = random(copy.gamma().n_gamma(), 4);

@@ -53,12 +53,12 @@ static PetscErrorCode Metis(const Mesh *mesh, PetscInt parts, int *part)
   PetscFunctionReturn(0);
 }
 
-/* The mesh, its parts and its coefficients, from the options. */
+/* The mesh, its parts and its coefficients, from the options. -ring: a quarter of a ring, held where it begins. */
 static PetscErrorCode Make(Problem *p)
 {
   PetscInt  given[3] = {8, 8, 8}, box[3] = {2, 2, 2}, dim = 3, three = 3, metis = 0, c, d;
   PetscReal shake = 0, vary = 0;
-  PetscBool elastic = PETSC_FALSE;
+  PetscBool elastic = PETSC_FALSE, ring = PETSC_FALSE;
   int       n[3];
 
   PetscFunctionBeginUser;
@@ -67,6 +67,7 @@ static PetscErrorCode Make(Problem *p)
   PetscCall(PetscOptionsGetIntArray(NULL, NULL, "-box", box, &three, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-metis", &metis, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-elastic", &elastic, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-ring", &ring, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-shake", &shake, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-vary", &vary, NULL));
   if (dim == 2) given[2] = box[2] = 1;
@@ -80,6 +81,12 @@ static PetscErrorCode Make(Problem *p)
 
       if (*x > 0 && *x < n[d]) *x += by;
     }
+  for (c = 0; ring && c < p->mesh.nodes; c++) {
+    PetscReal *x = p->mesh.x + 3 * c, r = n[0] + x[0], angle = PETSC_PI / 2 * x[1] / n[1];
+
+    x[0] = r * PetscSinReal(angle);
+    x[1] = -r * PetscCosReal(angle);
+  }
   PetscCall(PetscMalloc1(p->mesh.cells, &p->part));
   PetscCall(PetscMalloc1(p->mesh.cells, &p->factor));
   PetscCall(PetscMalloc1(p->mesh.nodes, &p->number));

@@ -1,10 +1,10 @@
 //! Averages of motions: of each whole edge or face, the functionals that see motions without energy beyond the means of
 //! its components.
 //!
-//! The functionals are orthonormal, and perpendicular to the means, but for rounding to seven digits. On an edge or
+//! The functionals are orthonormal, and perpendicular to the means. On an edge or
 //! face with nodes x about their centre, the motions that a mean does not see are the rotations ω × x. Those that
-//! vanish there are left out, as that about a straight edge. The basis follows from the span alone, and its entries are
-//! rounded: the same edge or face elsewhere has the same one, and equal subdomains stay equal.
+//! vanish there are left out, as that about a straight edge. The basis follows from the span alone:
+//! the same edge or face elsewhere has the same one but for rounding, and equal subdomains stay equal.
 //!
 //! The rank of the lowest subdomain that shares an edge or face computes them, and all others take its numbers.
 
@@ -23,10 +23,6 @@ use parallel::parcels::Parcels;
 /// A motion is dependent if less than this part of the largest one, or of what it was before the means were taken out,
 /// is left of it. Positions in single precision leave 1e-7.
 const DEPENDENT: [f64; 2] = [1e-3, 1e-6];
-
-/// Weights are rounded to multiples of one over this. What an average sees hardly changes, and the same edge or face
-/// elsewhere has the same weights to the last bit.
-const STEPS: f64 = (1u64 << 24) as f64;
 
 /// Two dofs move alike if their motions differ in size by less than this: the first of them is the pivot.
 const ALIKE: f64 = 1e-6;
@@ -197,8 +193,6 @@ fn canonical(q: &mut [Vec<f64>], n: usize) -> Vec<Vec<f64>> {
         }
         out.push(along);
     }
-    let all = out.iter_mut().flatten();
-    all.for_each(|w| *w = (*w * STEPS).round() / STEPS);
     out
 }
 

@@ -1,28 +1,28 @@
 //! Turned and mirrored copies: subdomains with K_j = φ R K_i Rᵀ, R the same rotation or reflection at every node.
 //!
-//! The positions of the nodes propose R, the matrices decide, block by block. Of a scalar field R is the identity. The
-//! search is among the subdomains that no plain comparison has found equal. Hashes of numbers that turns do not change
-//! come first, so that it costs next to nothing where nothing is turned.
+//! The blocks of the matrices at some nodes propose R, all blocks decide. Positions are not needed. Of a scalar field R
+//! is the identity. The search is among the subdomains that no plain comparison has found equal. Hashes of numbers that
+//! turns do not change come first, so that it costs next to nothing where nothing is turned.
 //!
-//! A subdomain takes part if all its nodes have all components, and so have the nodes of Δ, the vertices and the
-//! averages: a node held in one direction only has another matrix in another frame. So has a node that touches
-//! something in one direction along an axis and inside the body in the others.
+//! A subdomain takes part if all its nodes have all components, and so have the nodes of Δ and the vertices: a node
+//! held in one direction only has another matrix in another frame. So has a node that touches something in one
+//! direction along an axis and inside the body in the others. The averages of a copy must see what the turned averages
+//! see.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
 use super::equal::{Likeness, SAMPLES, UNIT};
+use super::problem::basis;
 use super::turn::Turn;
+use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::equal;
 use crate::substructures::Problem;
 use base::linalg::csr::Csr;
-use base::linalg::orthogonal::{fit, Fit, Matrix, IDENTITY};
+use base::linalg::orthogonal::{Matrix, IDENTITY};
+use base::linalg::similar::similarity;
 use parallel::team::Team;
-
-/// Nodes may be this far from their turned counterparts, relative to the extent of the subdomain. The bound only saves
-/// comparisons of matrices.
-const PLACED: f64 = 1e-9;
 
 /// Blocks may differ by this fraction of √(k_ii k_jj). Positions that a file has with sixteen digits are rounded at
 /// another place in a copy. This changes the shape of a cell that is a thousandth of the whole by 1e-13, and the matrix
@@ -44,7 +44,7 @@ pub(super) fn merge(problem: &Problem, jump: &Jump, team: &Team, all: &mut [Like
     let found = (0..first.len()).map(|k| hashes[k].unwrap_or(alone(k)));
     let buckets: Vec<u64> = found.collect();
     let turns = equal::first_of_each(team, &buckets, (1.0, None), |i, j| {
-        let components = components(problem, first[i])?;
+        let components = components(problem, jump, first[i])?;
         turned(problem, jump, components, [first[i], first[j]])
     });
     for own in all {
@@ -58,17 +58,22 @@ pub(super) fn merge(problem: &Problem, jump: &Jump, team: &Team, all: &mut [Like
     }
 }
 
-/// Number of components at every node if all nodes have the same, side by side and in one place.
-fn components(problem: &Problem, j: usize) -> Option<usize> {
+/// Number of components at every node if all nodes have the same, side by side and in one place. Without positions it
+/// is the largest number, up to three, that makes Δ, the vertices and the matrix consist of whole nodes.
+fn components(problem: &Problem, jump: &Jump, j: usize) -> Option<usize> {
     let sub = &problem.local[j];
-    let places = sub.coordinates.as_ref()?;
+    let whole = |c: &usize| has_whole_nodes(jump, j, *c) && NodeBlocks::new(&sub.k, *c).is_whole();
+    let Some(places) = &sub.coordinates else {
+        return (1..=3).rev().find(whole);
+    };
     let here = places.iter().take_while(|&x| *x == places[0]).count();
-    let whole = (1..=3).contains(&here) && places.len() % here == 0;
+    let counts = (1..=3).contains(&here) && places.len() % here == 0;
     let mut nodes = places.chunks_exact(here.max(1));
-    (whole && nodes.all(|node| node.iter().all(|x| *x == node[0]))).then_some(here)
+    let alike = counts && nodes.all(|node| node.iter().all(|x| *x == node[0]));
+    Some(here).filter(|c| alike && whole(c))
 }
 
-/// Whether Δ, vertices and averages of a local subdomain consist of whole nodes.
+/// Whether Δ and the vertices of a local subdomain consist of whole nodes.
 fn has_whole_nodes(jump: &Jump, j: usize, components: usize) -> bool {
     let c = components as u32;
     let whole = |dofs: &[u32]| {
@@ -78,39 +83,25 @@ fn has_whole_nodes(jump: &Jump, j: usize, components: usize) -> bool {
             all && node[0] % c == 0
         })
     };
-    let averages = &jump.averages[j];
-    let each = averages.len() / components;
-    let alike = |k: usize| {
-        let (a, first) = (&averages[k], &averages[k % each]);
-        let shift = (k / each) as u32;
-        let dofs = first.dofs.iter().map(|d| d + shift);
-        a.weights.is_none()
-            && first.dofs.iter().all(|d| d % c == 0)
-            && dofs.eq(a.dofs.iter().copied())
-    };
-    whole(&jump.delta[j])
-        && whole(&jump.primal[j])
-        && averages.len() % components == 0
-        && (0..averages.len()).all(alike)
+    whole(&jump.delta[j]) && whole(&jump.primal[j])
 }
 
 /// Hash of some numbers that a turn does not change; `None` if the subdomain cannot be turned.
 fn hash(problem: &Problem, jump: &Jump, j: usize) -> Option<u64> {
-    let c = components(problem, j)?;
+    let c = components(problem, jump, j)?;
     let k = &problem.local[j].k;
     let blocks = NodeBlocks::new(k, c);
     let scale = blocks.trace(0);
-    if !has_whole_nodes(jump, j, c) || scale <= 0.0 || scale.is_nan() {
+    if scale <= 0.0 || scale.is_nan() {
         return None;
     }
     let mut state = DefaultHasher::new();
     (k.n(), k.nnz(), &jump.delta[j], &jump.primal[j]).hash(&mut state);
-    let nodes = k.n() / c;
     let mut size = |square: f64| {
         let ratio = UNIT * square.sqrt() / scale + OFFSET;
         (ratio.floor() as i64).hash(&mut state);
     };
-    for node in (0..nodes).step_by((nodes / SAMPLES).max(1)) {
+    for node in blocks.sample() {
         // The block on the diagonal, the last one, and the sum of all.
         let squares = (0..blocks.row(node)?).map(|b| {
             let block = blocks.at(node, b);
@@ -134,69 +125,80 @@ fn turned(
     components: usize,
     [i, j]: [usize; 2],
 ) -> Option<(f64, Option<Turn>)> {
-    if self::components(problem, j) != Some(components) || !equal::same_pattern(problem, jump, i, j)
+    if self::components(problem, jump, j) != Some(components)
+        || !equal::same_pattern(problem, jump, i, j)
     {
         return None;
     }
-    let (from, to) = (&problem.local[i], &problem.local[j]);
-    let (x, y) = (from.coordinates.as_ref()?, to.coordinates.as_ref()?);
-    let nodes = x.len() / components;
-    let plane = [x, y].iter().all(|x| x.iter().all(|p| p[2] == x[0][2]));
-    let dim = if plane { 2 } else { 3 };
-    if components > 1 && components != dim {
+    let blocks = [i, j].map(|j| NodeBlocks::new(&problem.local[j].k, components));
+    let ratio = ratio(&blocks)?;
+    let q = proposed(&blocks, ratio)?;
+    if !are_similar(&blocks, ratio, &q) {
         return None;
     }
-    let Fit { q, far } = fit(nodes, dim, |k| [x[components * k], y[components * k]])?;
-    if far > PLACED {
-        return None;
+    if q == IDENTITY {
+        return equal::same_averages(jump, i, j).then_some((ratio, None));
     }
-    let q = if components == 1 { IDENTITY } else { q };
-    let factor = factor(&from.k, &to.k, components, &q)?;
-    let turn = (q != IDENTITY).then(|| Turn::new(components, q));
-    Some((factor, turn))
+    let turn = Turn::new(components, q);
+    let basis = |j: usize| {
+        let averages: Vec<&Average> = jump.averages[j].iter().collect();
+        basis(&jump.delta[j], &averages)
+    };
+    let alike = turn.takes(jump.delta[i].len(), &basis(i), &basis(j));
+    alike.then_some((ratio, Some(turn)))
 }
 
-/// φ with B = φ R A Rᵀ, if there is one. Both matrices have the same pattern.
-fn factor(a: &Csr, b: &Csr, components: usize, q: &Matrix) -> Option<f64> {
-    let (a, b) = (
-        NodeBlocks::new(a, components),
-        NodeBlocks::new(b, components),
-    );
-    let nodes = a.nodes();
-    let traces: Vec<f64> = (0..nodes).map(|n| a.trace(n)).collect();
-    let sum = |m: &NodeBlocks| (0..nodes).map(|n| m.trace(n)).sum::<f64>();
-    let ratio = sum(&b) / sum(&a);
-    if !(ratio.is_finite() && ratio > 0.0) || traces.iter().any(|t| *t <= 0.0 || t.is_nan()) {
-        return None;
-    }
+/// φ, the ratio of the traces of two matrices; `None` if a node has no stiffness.
+fn ratio([a, b]: &[NodeBlocks; 2]) -> Option<f64> {
+    let sum = |m: &NodeBlocks| {
+        let traces = (0..m.nodes()).map(|n| m.trace(n));
+        traces.fold(0.0, |sum, t| if t > 0.0 { sum + t } else { f64::NAN })
+    };
+    let ratio = sum(b) / sum(a);
     // Copies of one matrix that differ by rounding have φ = 1.
     let one = (ratio - 1.0).abs() <= ROUNDING;
     let ratio = if one { 1.0 } else { ratio };
-    let c = components;
-    for node in 0..nodes {
-        for block in 0..a.row(node)? {
-            let (x, y) = (a.at(node, block), b.at(node, block));
-            let mut half = [[0.0; 3]; 3];
-            for (i, row) in half[..c].iter_mut().enumerate() {
-                for (k, h) in row[..c].iter_mut().enumerate() {
-                    *h = (0..c).map(|l| q[i][l] * x[l][k]).sum();
-                }
-            }
-            let other = a.column(node, block);
-            // The trace of a block is at least its largest diagonal entry.
-            let size = ROUNDING * ratio * (traces[node] * traces[other]).sqrt();
-            for i in 0..c {
-                for k in 0..c {
-                    let sum: f64 = (0..c).map(|l| half[i][l] * q[k][l]).sum();
-                    let far = (y[i][k] - ratio * sum).abs();
-                    if far > size || far.is_nan() {
-                        return None;
-                    }
-                }
+    (ratio.is_finite() && ratio > 0.0).then_some(ratio)
+}
+
+/// R at every node by the blocks of some nodes, of matrices with the same pattern.
+fn proposed([a, b]: &[NodeBlocks; 2], ratio: f64) -> Option<Matrix> {
+    if a.components == 1 {
+        return Some(IDENTITY);
+    }
+    let mut pairs = Vec::new();
+    for node in a.sample() {
+        let row = 0..a.row(node)?;
+        pairs.extend(row.map(|block| [a.at(node, block), b.at(node, block)]));
+    }
+    similarity(pairs.len(), a.components, ratio, |k| pairs[k])
+}
+
+/// Whether B = φ R A Rᵀ. Both matrices have the same pattern.
+fn are_similar([a, b]: &[NodeBlocks; 2], ratio: f64, q: &Matrix) -> bool {
+    let traces: Vec<f64> = (0..a.nodes()).map(|n| a.trace(n)).collect();
+    let c = a.components;
+    let similar = |node: usize, block: usize| {
+        let (x, y) = (a.at(node, block), b.at(node, block));
+        let mut half = [[0.0; 3]; 3];
+        for (i, row) in half[..c].iter_mut().enumerate() {
+            for (k, h) in row[..c].iter_mut().enumerate() {
+                *h = (0..c).map(|l| q[i][l] * x[l][k]).sum();
             }
         }
-    }
-    Some(ratio)
+        let other = a.column(node, block);
+        // The trace of a block is at least its largest diagonal entry.
+        let size = ROUNDING * ratio * (traces[node] * traces[other]).sqrt();
+        let near = |(i, k): (usize, usize)| {
+            let sum: f64 = (0..c).map(|l| half[i][l] * q[k][l]).sum();
+            (y[i][k] - ratio * sum).abs() <= size
+        };
+        (0..c * c).all(|e| near((e / c, e % c)))
+    };
+    (0..a.nodes()).all(|node| {
+        let blocks = a.row(node);
+        blocks.is_some_and(|n| (0..n).all(|block| similar(node, block)))
+    })
 }
 
 /// A matrix by blocks: a row and a column for each node.
@@ -212,6 +214,18 @@ impl<'a> NodeBlocks<'a> {
 
     fn nodes(&self) -> usize {
         self.k.n() / self.components
+    }
+
+    /// Some nodes, from first to last.
+    fn sample(&self) -> impl Iterator<Item = usize> {
+        let step = (self.nodes() / SAMPLES).max(1);
+        (0..self.nodes()).step_by(step)
+    }
+
+    /// Whether the rows of some nodes consist of blocks.
+    fn is_whole(&self) -> bool {
+        let whole = self.k.n() % self.components == 0;
+        whole && self.sample().all(|node| self.row(node).is_some())
     }
 
     /// Number of blocks in the row of a node; `None` if the pattern is not one of blocks.

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-use super::equal::Likeness;
-use super::problem::LocalProblem;
+use super::equal::{same_averages, Likeness};
+use super::problem::{basis, LocalProblem};
 use super::retained::Still;
 use super::scaled::ScaledSubdomain;
 use super::which::OperatorForm;
@@ -107,7 +107,7 @@ pub(crate) fn factor(
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     // Copies that are turned alike have Ψ in common.
-    let mut turned: Vec<(usize, ScaledSubdomain)> = Vec::new();
+    let mut turned: Vec<(usize, usize, ScaledSubdomain)> = Vec::new();
     let of = |(j, like): (usize, &Likeness)| {
         if let Some(known) = known(j) {
             return Ok(known.clone());
@@ -121,14 +121,16 @@ pub(crate) fn factor(
         if problem.gamma.n_gamma() > kinds[k].delta.len() + kinds[k].primal.len() {
             return Ok(ScaledSubdomain::new(make(k, j)?, 1.0));
         }
-        let same = |(first, s): &&(usize, ScaledSubdomain)| {
-            *first == like.first && s.turn() == Some(&turn)
+        let same = |(first, i, s): &&(usize, usize, ScaledSubdomain)| {
+            *first == like.first && s.turn() == Some(&turn) && same_averages(jump, *i, j)
         };
-        if let Some((_, known)) = turned.iter().find(same) {
+        if let Some((_, _, known)) = turned.iter().find(same) {
             return Ok(known.with_factor(like.factor));
         }
-        let new = ScaledSubdomain::turned(problem.clone(), like.factor, turn);
-        turned.push((like.first, new.clone()));
+        let averages: Vec<&Average> = jump.averages[j].iter().collect();
+        let basis = basis(&jump.delta[j], &averages);
+        let new = ScaledSubdomain::turned(problem.clone(), like.factor, turn, basis);
+        turned.push((like.first, j, new.clone()));
         Ok(new)
     };
     let locals: Result<Vec<ScaledSubdomain>> = first.iter().enumerate().map(of).collect();

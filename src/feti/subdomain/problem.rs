@@ -71,8 +71,8 @@ pub struct Gamma {
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others). Empty where
     /// nobody shares the sparse factor that it follows from ([`ScaledSubdomain::psi`](super::scaled::ScaledSubdomain)).
     pub psi: Dense,
-    /// R of a turned copy, whose fixing dofs are dofs of Rᵀ u; see [`Turn`].
-    pub turn: Option<Turn>,
+    /// R of a turned copy, and the functionals before the turn: fixing dofs are coordinates of Rᵀ u in their basis.
+    pub turn: Option<(Turn, Basis)>,
 }
 
 /// One subdomain, factored. What all multiples of its matrix have in common is read from its [`Gamma`].
@@ -107,10 +107,11 @@ impl Gamma {
     pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
         let mut changed = u.to_vec();
         if !self.fixing.is_empty() {
-            if let Some(turn) = &self.turn {
+            let basis = self.turn.as_ref().map_or(&self.basis, |(turn, basis)| {
                 turn.back(&mut changed);
-            }
-            self.basis.to_coordinates(&mut changed);
+                basis
+            });
+            basis.to_coordinates(&mut changed);
         }
         let vertices = u[self.n_delta..].iter().copied();
         let fixing = self.fixing.iter().map(|&i| changed[i]);
@@ -149,18 +150,7 @@ impl LocalProblem {
         mut condenser: Condenser,
         form: OperatorForm,
     ) -> Result<LocalProblem, NoFactor> {
-        let mut basis = Basis::default();
-        let at = positions(delta);
-        for average in averages {
-            let at = at.of(&average.dofs);
-            match &average.weights {
-                None => basis.push_mean(at),
-                Some(weights) => {
-                    let new = basis.push(at, weights);
-                    assert!(new, "functionals of averages are independent");
-                }
-            }
-        }
+        let basis = basis(delta, averages);
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
         if form == OperatorForm::Implicit {
             let interface = [delta, primal].concat();
@@ -276,7 +266,7 @@ impl LocalProblem {
     }
 
     /// Stores Ψ: several subdomains read it together.
-    pub(crate) fn store_psi(&mut self) {
+    pub fn store_psi(&mut self) {
         if let Some(psi) = self.in_halves().map(|solves| solves.held().psi()) {
             self.gamma.psi = psi;
         }
@@ -288,6 +278,23 @@ impl LocalProblem {
         let coarse = self.gamma.psi.data.len() + self.sigma.data.len();
         (sparse, dense + coarse * std::mem::size_of::<f64>())
     }
+}
+
+/// The functionals of averages over dofs of Δ.
+pub(super) fn basis(delta: &[u32], averages: &[&Average]) -> Basis {
+    let mut basis = Basis::default();
+    let at = positions(delta);
+    for average in averages {
+        let at = at.of(&average.dofs);
+        match &average.weights {
+            None => basis.push_mean(at),
+            Some(weights) => {
+                let new = basis.push(at, weights);
+                assert!(new, "functionals of averages are independent");
+            }
+        }
+    }
+    basis
 }
 
 /// The diagonal of `k` at these dofs.

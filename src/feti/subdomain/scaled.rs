@@ -4,7 +4,8 @@
 //!     S = φ R S₀ Rᵀ     T = R T₀ Rᵀ / φ     Ψ = R Ψ₀ R_Πᵀ     Σ = φ R_Π Σ₀ R_Πᵀ     K_II⁻¹ = R K₀,II⁻¹ Rᵀ / φ
 //! ```
 //!
-//! R has the same rotation or reflection at every node ([`Turn`]), R_Π at every vertex and average. Subdomains with
+//! R has the same rotation or reflection at every node ([`Turn`]). R_Π has it at every vertex, and turns the values of
+//! the averages of the one into those of the other. Subdomains with
 //! different coefficients and turned copies of a part share one factorisation in this way. Every operator that depends
 //! on the stiffness is applied through this type. All multiples have the same [`Gamma`], which `gamma` gives; turned
 //! copies have one of their own, because it has Ψ.
@@ -14,6 +15,7 @@
 
 use std::sync::Arc;
 
+use super::basis::Basis;
 use super::problem::{Gamma, LocalProblem};
 use super::turn::Turn;
 use super::which::Operator;
@@ -28,11 +30,12 @@ pub struct ScaledSubdomain {
     turned: Option<Arc<Turned>>,
 }
 
-/// The data of a turned copy that is its own: the turn, and the [`Gamma`] with the turned Ψ.
+/// The data of a turned copy that is its own: the turn, the [`Gamma`] with the turned Ψ, and R_Π Σ₀ R_Πᵀ.
 #[derive(Debug)]
 struct Turned {
     turn: Turn,
     gamma: Gamma,
+    sigma: Dense,
 }
 
 impl ScaledSubdomain {
@@ -45,14 +48,23 @@ impl ScaledSubdomain {
         }
     }
 
-    /// The subdomain with `factor` times R K₀ Rᵀ, K₀ the matrix of `problem`. The interface of `problem` must have all
-    /// components of its nodes side by side.
-    pub fn turned(problem: Arc<LocalProblem>, factor: f64, turn: Turn) -> ScaledSubdomain {
-        let gamma = turn.of_gamma(&problem.gamma);
+    /// The subdomain with `factor` times R K₀ Rᵀ, K₀ the matrix of `problem`, and the functionals `basis`. The
+    /// interface of `problem` must have all components of its nodes side by side.
+    pub fn turned(
+        problem: Arc<LocalProblem>,
+        factor: f64,
+        turn: Turn,
+        basis: Basis,
+    ) -> ScaledSubdomain {
+        let on_primal = turn.on_primal(&problem.gamma, &basis);
+        let gamma = turn.of_gamma(&problem.gamma, basis, &on_primal);
+        let mut sigma = problem.sigma.clone();
+        on_primal.congruence(&mut sigma);
+        sigma.symmetrise();
         ScaledSubdomain {
             problem,
             factor,
-            turned: Some(Arc::new(Turned { turn, gamma })),
+            turned: Some(Arc::new(Turned { turn, gamma, sigma })),
         }
     }
 
@@ -174,11 +186,8 @@ impl ScaledSubdomain {
 
     /// Σ, n_Π × n_Π.
     pub fn sigma(&self) -> Dense {
-        let mut out = self.problem.sigma.clone();
-        if let Some(turn) = self.turn() {
-            turn.congruence_of_primal(&self.problem.gamma, &mut out);
-            out.symmetrise();
-        }
+        let turned = self.turned.as_ref();
+        let mut out = turned.map_or(&self.problem.sigma, |t| &t.sigma).clone();
         scale(self.factor, &mut out.data);
         out
     }

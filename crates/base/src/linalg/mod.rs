@@ -8,6 +8,7 @@ pub mod nnls;
 pub mod null_space;
 pub mod orthogonal;
 pub mod semidefinite;
+pub mod similar;
 pub mod single;
 pub mod small;
 pub mod sorted;

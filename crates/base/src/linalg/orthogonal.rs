@@ -100,7 +100,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 /// The nearest orthogonal matrix: Newton's iteration Q ← (Q + Q⁻ᵀ) / 2. `None` if `q` is far from one.
-fn nearest(mut q: Matrix) -> Option<Matrix> {
+pub(super) fn nearest(mut q: Matrix) -> Option<Matrix> {
     for step in 0..NEWTON {
         let (det, inverse) = invert(&q);
         if step == 0 && !(0.5..2.0).contains(&det.abs()) {
@@ -113,7 +113,7 @@ fn nearest(mut q: Matrix) -> Option<Matrix> {
 }
 
 /// Q with exact zeros and ones, if all its entries are near them.
-fn exact(q: Matrix) -> Matrix {
+pub(super) fn exact(q: Matrix) -> Matrix {
     let rounded = q.map(|row| row.map(f64::round));
     let pairs = || q.iter().flatten().zip(rounded.iter().flatten());
     if pairs().all(|(a, b)| (a - b).abs() <= EXACT) {
