@@ -189,10 +189,16 @@ fn collapsed_axis(n: usize) -> Vec<(f64, f64)> {
     .collect()
 }
 
-/// A rule on the triangle with n² points, exact for degree 2n − 2: ((r, s), weight); the weights sum to 1/2.
-pub fn triangle_rule(n: usize) -> Vec<([f64; 2], f64)> {
-    let rule = collapsed(2, n).into_iter();
-    rule.map(|([r, s, _], weight)| ([r, s], weight)).collect()
+/// A rule on the triangle that is exact for this degree: ((r, s), weight); the weights sum to 1/2. Symmetric rules have
+/// 6 points for degree 4 and 16 for degree 8, others are collapsed squares.
+pub fn triangle_rule(degree: usize) -> Vec<([f64; 2], f64)> {
+    let rule = match degree {
+        4 => triangle_six(),
+        8 => triangle_sixteen(),
+        _ => collapsed(2, degree / 2 + 1),
+    };
+    let flat = rule.into_iter();
+    flat.map(|([r, s, _], weight)| ([r, s], weight)).collect()
 }
 
 /// A simplex as a collapsed cube with n Gauss points in each direction: exact for degree 2n − D.
@@ -250,6 +256,24 @@ fn triangle_six() -> Vec<QuadraturePoint> {
             (620.0 + sign * difference) / 7440.0,
             &mut rule,
         );
+    }
+    rule
+}
+
+/// Exact for degree 8 (Dunavant 1985).
+fn triangle_sixteen() -> Vec<QuadraturePoint> {
+    let mut rule = vec![([1.0 / 3.0, 1.0 / 3.0, 0.0], 0.5 * 0.144_315_607_677_787_2)];
+    for (peak, weight) in [
+        (0.081_414_823_414_553_7, 0.095_091_634_267_284_62),
+        (0.658_861_384_496_480_2, 0.103_217_370_534_718_25),
+        (0.898_905_543_365_938_1, 0.032_458_497_623_198_08),
+    ] {
+        orbit(2, peak, 0.5 * weight, &mut rule);
+    }
+    let (near, far) = (0.008_394_777_409_957_605, 0.263_112_829_634_638_1);
+    let l = [near, far, 1.0 - near - far];
+    for [p, q] in [[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]] {
+        rule.push(([l[p], l[q], 0.0], 0.5 * 0.027_230_314_174_434_995));
     }
     rule
 }

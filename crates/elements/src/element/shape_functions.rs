@@ -7,6 +7,8 @@
 //! | wedges | the triangle × \[−1, 1\] |
 //! | the pyramid | the base \[−1, 1\]², the apex (0, 0, 1) |
 
+use std::sync::OnceLock;
+
 use crate::kind::CellKind;
 
 /// Most nodes of a cell.
@@ -27,23 +29,22 @@ pub(super) fn shape(kind: CellKind, at: [f64; 3]) -> ShapeFunctions {
         value: [0.0; MOST],
         slope: [[0.0; MOST]; 3],
     };
-    let nodes = reference_nodes(kind);
     match kind {
         CellKind::Point1 => out.value[0] = 1.0,
         CellKind::Line2 | CellKind::Quad4 | CellKind::Hex8 => {
-            for (a, &node) in nodes.iter().enumerate() {
+            for (a, &node) in known_nodes(kind).iter().enumerate() {
                 let dim = kind.dim();
                 product(&mut out, a, dim, |d| linear(at[d], node[d]));
             }
         }
         CellKind::Line3 | CellKind::Quad9 | CellKind::Hex27 => {
-            for (a, &node) in nodes.iter().enumerate() {
+            for (a, &node) in known_nodes(kind).iter().enumerate() {
                 let dim = kind.dim();
                 product(&mut out, a, dim, |d| quadratic(at[d], node[d]));
             }
         }
         CellKind::Quad8 | CellKind::Hex20 => {
-            for (a, &node) in nodes.iter().enumerate() {
+            for (a, &node) in known_nodes(kind).iter().enumerate() {
                 serendipity(&mut out, a, kind.dim(), at, node);
             }
         }
@@ -51,9 +52,16 @@ pub(super) fn shape(kind: CellKind, at: [f64; 3]) -> ShapeFunctions {
             simplex(&mut out, kind, at);
         }
         CellKind::Wedge6 | CellKind::Wedge15 => wedge(&mut out, kind, at),
-        CellKind::Pyramid5 => pyramid(&mut out, at, &nodes),
+        CellKind::Pyramid5 => pyramid(&mut out, at, known_nodes(kind)),
     }
     out
+}
+
+/// [`reference_nodes`], found once.
+fn known_nodes(kind: CellKind) -> &'static [[f64; 3]] {
+    static NODES: [OnceLock<Vec<[f64; 3]>>; CellKind::ALL.len()] =
+        [const { OnceLock::new() }; CellKind::ALL.len()];
+    NODES[kind as usize].get_or_init(|| reference_nodes(kind))
 }
 
 /// Where the nodes of a cell lie in its reference cell: middle nodes in the middle of their edges and faces.

@@ -134,36 +134,55 @@ impl<'s> Covered<'s> {
             return;
         }
         let part = 1.0 / active.len() as f64;
-        let hats: Vec<Vec<f64>> = self
-            .modified
+        let hat = |m: &[f64; 9]| {
+            let others = (0..nodes.len()).filter(|a| !active.contains(a));
+            let rest: f64 = others.map(|a| m[a]).sum();
+            let mut hat = [0.0; 9];
+            let carried = hat.iter_mut().zip(&active);
+            carried.for_each(|(hat, &a)| *hat = m[a] + part * rest);
+            hat
+        };
+        let hats: Vec<[f64; 9]> = self.modified.iter().map(hat).collect();
+        let n = active.len();
+        let dual = self.dual(&hats, n);
+        let facing = self.samples.chunk_by(|a, b| a.other == b.other);
+        let mut points = hats
             .iter()
-            .map(|m| {
-                let rest: f64 = (0..nodes.len())
-                    .filter(|a| !active.contains(a))
-                    .map(|a| m[a])
-                    .sum();
-                active.iter().map(|&a| m[a] + part * rest).collect()
-            })
-            .collect();
-        for ((psi, q), sample) in self.dual(&hats).iter().zip(0..).zip(self.samples) {
-            let theirs = &other.faces()[sample.other as usize].nodes;
-            for (p, &a) in psi.iter().zip(&active) {
-                let sum = sums.entry(nodes[a]).or_default();
-                let weight = self.weights[q] * p;
-                sum.area += weight;
-                for (&k, value) in nodes.iter().zip(&self.own[q]) {
-                    *sum.own.entry(k).or_default() += weight * value;
+            .zip(&self.weights)
+            .zip(&self.own)
+            .zip(&self.other);
+        for samples in facing {
+            let theirs = &other.faces()[samples[0].other as usize].nodes;
+            // ∫ φ̂ φ, ∫ φ̂ φ° and ∫ φ̂ over the part of the face that is opposite this one.
+            let (mut own, mut opposite, mut area) = ([[0.0; 9]; 9], [[0.0; 9]; 9], [0.0; 9]);
+            for (((hat, weight), here), there) in points.by_ref().take(samples.len()) {
+                for r in 0..n {
+                    let weight = weight * hat[r];
+                    area[r] += weight;
+                    add_scaled(&mut own[r], weight, here);
+                    add_scaled(&mut opposite[r], weight, there);
                 }
-                for (&k, value) in theirs.iter().zip(&self.other[q]) {
-                    *sum.other.entry(k).or_default() += weight * value;
+            }
+            for (psi, &a) in dual.iter().zip(&active) {
+                let (mut row, mut there) = ([0.0; 9], [0.0; 9]);
+                let sum = sums.entry(nodes[a]).or_default();
+                for r in 0..n {
+                    sum.area += psi[r] * area[r];
+                    add_scaled(&mut row, psi[r], &own[r]);
+                    add_scaled(&mut there, psi[r], &opposite[r]);
+                }
+                for (&k, value) in nodes.iter().zip(row) {
+                    *sum.own.entry(k).or_default() += value;
+                }
+                for (&k, value) in theirs.iter().zip(there) {
+                    *sum.other.entry(k).or_default() += value;
                 }
             }
         }
     }
 
-    /// The dual functions at the samples.
-    fn dual(&self, hats: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let n = hats[0].len();
+    /// The first `n` rows and columns of D̂ M̂⁻¹: each row is a dual function, as a combination of the φ̂.
+    fn dual(&self, hats: &[[f64; 9]], n: usize) -> [[f64; 9]; 9] {
         let mut mass = Dense::zeros(n, n);
         let mut diagonal = vec![0.0; n];
         for (hat, w) in hats.iter().zip(&self.weights) {
@@ -177,18 +196,28 @@ impl<'s> Covered<'s> {
         let size: Vec<f64> = (0..n).map(|i| mass.get(i, i)).collect();
         let regular = dense::cholesky(mass.view_mut(), &mut Scratch::default()).is_ok()
             && (0..n).all(|i| mass.get(i, i).powi(2) > SINGULAR * size[i]);
-        let one = |hat: &Vec<f64>| {
-            if !regular {
-                // A sliver, in which no two functions can be told apart: constants remain.
-                return vec![1.0 / n as f64; n];
-            }
+        let mut out = [[0.0; 9]; 9];
+        if !regular {
+            // A sliver, in which no two functions can be told apart: constants remain. The sum of the φ̂ is 1.
+            let rows = out[..n].iter_mut();
+            rows.for_each(|row| row[..n].fill(1.0 / n as f64));
+            return out;
+        }
+        for (p, row) in out[..n].iter_mut().enumerate() {
             let mut x = Dense::zeros(n, 1);
-            x.col_mut(0).copy_from_slice(hat);
+            x.set(p, 0, diagonal[p]);
             dense::solve_lower(mass.view(), x.view_mut());
             dense::solve_lower_transpose(mass.view(), x.view_mut());
-            x.col(0).iter().zip(&diagonal).map(|(v, d)| v * d).collect()
-        };
-        hats.iter().map(one).collect()
+            row[..n].copy_from_slice(x.col(0));
+        }
+        out
+    }
+}
+
+/// y ← y + α x.
+fn add_scaled(y: &mut [f64; 9], alpha: f64, x: &[f64; 9]) {
+    for i in 0..9 {
+        y[i] += alpha * x[i];
     }
 }
 

@@ -12,16 +12,15 @@ use super::tree::bounds;
 use crate::element::triangle_rule;
 use base::linalg::vec3::{cross, dot, minus, norm, unit};
 
-/// Points in one direction of the rule of a triangle: exact for products of the shape functions of faces of first order
-/// (degree 4) and of second order (degree 8) that are affine; where one is not, shape functions are no polynomials in
-/// the plane.
-const POINTS: [usize; 3] = [3, 5, 8];
+/// Degrees for which the rule of a triangle is exact: products of the shape functions of faces of first order, and of
+/// faces of second order that are affine; where a face is not affine, shape functions are no polynomials in the plane.
+const DEGREES: [usize; 3] = [4, 8, 14];
 
 /// Polygons smaller than this fraction of the piece are left out.
 const SMALL: f64 = 1e-10;
 
 pub(super) fn samples(side: &MortarSide, other: &MortarSide, reach: f64) -> Vec<MortarSample> {
-    let rules = POINTS.map(triangle_rule);
+    let rules = DEGREES.map(triangle_rule);
     let mut out = Vec::new();
     for piece in &side.pieces {
         let plane = PiecePlane::new(side, piece);

@@ -147,3 +147,24 @@ fn gauss_points_are_symmetric() {
         assert_eq!(points.len(), n.div_ceil(2));
     }
 }
+
+#[test]
+fn rules_of_triangles_are_exact_for_their_degree() {
+    for (degree, points) in [(4, 6), (8, 16), (14, 64)] {
+        let rule = triangle_rule(degree);
+        assert_eq!(rule.len(), points);
+        for i in 0..=degree {
+            for j in 0..=degree - i {
+                let terms = rule
+                    .iter()
+                    .map(|([r, s], w)| w * r.powi(i as i32) * s.powi(j as i32));
+                let expected = exact(CellKind::Triangle3, [i, j, 0]);
+                let error = terms.sum::<f64>() - expected;
+                assert!(error.abs() < 1e-15, "{degree} {i} {j}: {error:e}");
+            }
+        }
+        let inside =
+            |([r, s], w): &([f64; 2], f64)| *r > 0.0 && *s > 0.0 && r + s < 1.0 && *w > 0.0;
+        assert!(rule.iter().all(inside));
+    }
+}

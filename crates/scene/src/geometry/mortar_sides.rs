@@ -1,7 +1,7 @@
 //! Two sides that mortar integrals join, and the rows that follow, with nodes of bodies.
 
 use std::collections::{BTreeSet, HashSet};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::model::body::BodySpec;
 use elements::form::Form;
@@ -25,6 +25,8 @@ pub(crate) struct Surfaces {
     /// The node of its body for each node of a side.
     pub(super) nodes: [Vec<usize>; 2],
     samples: Vec<MortarSample>,
+    /// The rows if no node is excluded, once they are known.
+    whole: OnceLock<Vec<BodyRow>>,
     /// The rows of nodes that are held one by one, in the place of integrals.
     single: Option<Vec<BodyRow>>,
     /// Nodes that two sides of one body have in common, as at the tip of a crack: they carry no multiplier, since there
@@ -39,6 +41,7 @@ impl Surfaces {
             samples: mortar::samples(&own.0, &other.0, reach),
             sides: [own.0, other.0],
             nodes: [own.1, other.1],
+            whole: OnceLock::new(),
             single: None,
             common: HashSet::new(),
         }
@@ -49,6 +52,7 @@ impl Surfaces {
         let own: HashSet<usize> = self.nodes[0].iter().copied().collect();
         let both = self.nodes[1].iter().copied();
         self.common = both.filter(|node| own.contains(node)).collect();
+        self.whole = OnceLock::new();
         self
     }
 
@@ -61,6 +65,7 @@ impl Surfaces {
             samples: Vec::new(),
             sides: [own.0, other.0],
             nodes: [own.1, other.1],
+            whole: OnceLock::new(),
             single: Some(rows),
             common: HashSet::new(),
         }
@@ -91,6 +96,15 @@ impl Surfaces {
             let rows = rows.iter().filter(|row| !excluded(row.node));
             return rows.cloned().collect();
         }
+        let whole = self.whole.get_or_init(|| self.integrals(form, &|_| false));
+        match whole.iter().any(|row| excluded(row.node)) {
+            true => self.integrals(form, excluded),
+            false => whole.clone(),
+        }
+    }
+
+    /// The rows by mortar integrals.
+    fn integrals(&self, form: &Form, excluded: &dyn Fn(usize) -> bool) -> Vec<BodyRow> {
         let [own, theirs] = [0, 1].map(|k| {
             move |list: Vec<(u32, f64)>| -> Vec<(usize, f64)> {
                 let node = |(n, v): (u32, f64)| (self.nodes[k][n as usize], v);
