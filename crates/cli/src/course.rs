@@ -1,6 +1,7 @@
 //! The course of a solve over the load steps of its scene.
 
 use std::path::Path;
+use std::time::Instant;
 
 use super::early::Early;
 use super::events::Events;
@@ -39,6 +40,10 @@ pub(super) struct Course {
     pub iterations: Vec<usize>,
     pub solve_seconds: f64,
     pub recover_seconds: f64,
+    /// Set-ups between load steps.
+    pub setup_seconds: f64,
+    /// Fields of load steps.
+    pub write_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
     /// Rows of friction on rank 0.
@@ -82,7 +87,7 @@ pub(super) fn follow(
     if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
         session.agree(list_before(session, dir, &times[..first], place, pvd))?;
     }
-    let (mut seconds, mut strained) = ([0.0; 2], 0.0);
+    let (mut seconds, mut strained) = ([0.0; 4], 0.0);
     let mut fields: Option<Gathered> = None;
     let mut early = Early::new(session, stepper.scene(), stepper.solver())?;
     // From here on there are results to keep; before, a signal ends the program at once.
@@ -131,6 +136,7 @@ pub(super) fn follow(
         let rows = contact::rows(session, solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
+        seconds[2] += solved.renewal.map_or(0.0, |r| r.seconds);
         let certified = early.record(session, scene, solution, step);
         let mut now = Course {
             step,
@@ -145,6 +151,8 @@ pub(super) fn follow(
             load_steps: Vec::new(),
             solve_seconds: seconds[0],
             recover_seconds: seconds[1],
+            setup_seconds: seconds[2],
+            write_seconds: 0.0,
             friction: FrictionRows::new(session, solver, &solved.solution),
             solution: solved.solution,
             rows,
@@ -161,6 +169,7 @@ pub(super) fn follow(
             });
         }
         if let (Some(dir), Some(pvd), Some(t)) = (&destination.out, &mut pvd, solved.time) {
+            let clock = Instant::now();
             let fields = match &mut fields {
                 Some(fields) => fields,
                 None => fields.insert(Gathered::new(session, scene, solver, place)?),
@@ -170,6 +179,8 @@ pub(super) fn follow(
             fields.write_vtu(session, scene, &now.solution, now.contact(), dir, &name)?;
             let file = dir.join(place.file(&name));
             on_first_rank(session, || pvd.add(t, &file))?;
+            seconds[3] += clock.elapsed().as_secs_f64();
+            now.write_seconds = seconds[3];
         }
         let done = course.insert(now);
         records.outer.append(&mut done.outer);

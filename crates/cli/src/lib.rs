@@ -21,6 +21,7 @@ mod line_marks;
 mod maps;
 mod pages;
 mod parse;
+mod phases;
 mod physics;
 mod picture;
 mod plan;

@@ -103,11 +103,10 @@ pub(super) fn report(
         node_print: Vec::new(),
         communication: solver.communication(),
         seconds: json::Seconds {
-            assemble: 0.0,
-            setup: facts.setup_seconds,
             solve: course.solve_seconds,
             recover: course.recover_seconds,
-            total: 0.0,
+            write: course.write_seconds,
+            ..json::Seconds::default()
         },
         memory_mb: memory[0],
         operators: Some(operators(session, solver.facts())),

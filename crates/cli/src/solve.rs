@@ -1,7 +1,6 @@
 //! `fetifeti solve`.
 
 use std::path::Path;
-use std::time::Instant;
 
 use super::args::SolveArguments;
 use super::contact;
@@ -9,6 +8,7 @@ use super::course::{follow, Course};
 use super::events::Events;
 use super::fields::{GatherTarget, Gathered};
 use super::first_rank::on_first_rank;
+use super::phases::Phases;
 use super::record::{checks, report};
 use super::values::NodalValues;
 use super::{doubts, inputs, maps, picture, smoothed};
@@ -29,17 +29,19 @@ use scene::{distribution, fits, DeckScenes, Scene, SlipHistory, Stepper};
 
 /// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
-    let clock = Instant::now();
     let destination = Destination::from(args.results.clone());
     if DeckScenes::is_deck(&args.scene) {
         return run_deck(session, &args, &destination);
     }
+    let mut phases = Phases::new(session, destination.quiet);
+    phases.begin(&reading(&args.scene));
     let scene = distribution::load_part(session, &args.scene)?;
+    phases.end();
     on_first_rank(session, || {
         destination.prepare()?;
         destination.print(&lines(&scene.sentences()))
     })?;
-    solve(session, &args, &destination, scene, clock, None)
+    solve(session, &args, &destination, scene, phases, None)
 }
 
 /// Solves the steps of a deck one after the other; each is a problem of its own, which begins where friction has slid
@@ -66,13 +68,15 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
     let n = deck.n_steps();
     for step in 0..n {
         course.step = step;
-        let clock = Instant::now();
+        let mut phases = Phases::new(session, destination.quiet);
+        phases.begin(&reading(&args.scene));
         let title = match n {
             1 => stem.clone(),
             _ => format!("{stem}, step {}", step + 1),
         };
         let scene = session.agree(deck.scene_after(&course.slid, &title, step))?;
         distribution::same_on_all_ranks(session, &args.scene, &scene)?;
+        phases.end();
         // What steps have in common is said once.
         let mut new = scene.sentences();
         new.retain(|note| !told.contains(note));
@@ -87,7 +91,7 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
             of_step.json = destination.json.clone().filter(|_| step + 1 == n);
             on_first_rank(session, || of_step.prepare())?;
         }
-        solve(session, args, &of_step, scene, clock, Some(&mut course))?;
+        solve(session, args, &of_step, scene, phases, Some(&mut course))?;
     }
     let printed = course.printed;
     on_first_rank(session, || match &destination.out {
@@ -115,13 +119,18 @@ struct FromDeck<'a> {
     printed: Vec<NodePrint>,
 }
 
-/// Solves a scene and writes its results.
+/// The phase in which a file is read.
+fn reading(file: &Path) -> String {
+    format!("reading {}", file.display())
+}
+
+/// Solves a scene and writes its results. The phases so far were those of reading.
 fn solve(
     session: &Session,
     args: &SolveArguments,
     destination: &Destination,
     scene: Scene,
-    clock: Instant,
+    mut phases: Phases,
     mut deck: Option<&mut FromDeck>,
 ) -> Result<()> {
     let checkpoints = Checkpoints::new(
@@ -134,13 +143,16 @@ fn solve(
     let events = Events::new(session, args.events.as_deref())?;
     let name = args.scene.display().to_string();
     session.agree(fits::solved(session, &scene, &name))?;
-    let start = Instant::now();
+    let read = phases.total();
+    phases.begin("assembling");
     let substructures = distribution::substructures(session, &scene)?;
     give_back(); // what reading took
-    let assemble = start.elapsed().as_secs_f64();
+    let assemble = phases.end();
 
+    phases.begin("setting up");
     let solver = FetiFeti::new(session, substructures, Stepper::settings(&scene))?;
     give_back(); // lists of the set-up
+    let setup = phases.end();
     let stepper = Stepper::with_solver(scene, solver)?;
     let place = if args.pieces {
         GatherTarget::EachRank
@@ -163,7 +175,9 @@ fn solve(
         report.check = Some(checks(stepper.solver_mut(), exact)?);
     }
     let (scene, solver) = (stepper.scene(), stepper.solver());
+    report.seconds.read = read;
     report.seconds.assemble = assemble;
+    report.seconds.setup = setup + course.setup_seconds;
     if session.rank() == 0 {
         report.inputs = inputs::of(&args.scene);
     }
@@ -201,9 +215,11 @@ fn solve(
         report.node_print.clone_from(&deck.printed);
     }
     if let Some(dir) = &destination.out {
+        phases.begin("writing fields and pictures");
         write_fields(session, scene, solver, &course, place, dir)?;
+        report.seconds.write += phases.end();
     }
-    report.seconds.total = clock.elapsed().as_secs_f64();
+    report.seconds.end(phases.total());
     on_first_rank(session, || write_report(destination, &report, place))?;
     if solution.converged() {
         Ok(())

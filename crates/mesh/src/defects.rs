@@ -5,6 +5,7 @@ use std::collections::HashSet;
 
 use super::cell_mesh::CellMesh;
 use super::point_grid::PointGrid;
+use arrayvec::ArrayVec;
 use base::linalg::vec3::{cross, dot, minus, norm};
 
 /// Two nodes of a body are one if their distance is at most this fraction of the body's size.
@@ -96,8 +97,9 @@ fn folded(mesh: &CellMesh) -> Option<Defect> {
             theirs.len() == on.len() && theirs.iter().all(|k| on.contains(k))
         };
         let theirs = corners(mesh, other, sides(other).find(twin)?);
-        let one_side = ahead(mesh, c, &on) * ahead(mesh, other, &on) > 0.0;
-        (same_order(&on, &theirs) && one_side).then(|| {
+        let one_side = || ahead(mesh, c, &on) * ahead(mesh, other, &on) > 0.0;
+        // Sound neighbours have opposite orders: nothing else is looked at.
+        (same_order(&on, &theirs) && one_side()).then(|| {
             let [a, b] = [c, other].map(|c| mesh.cell_ids[c]);
             let nodes: Vec<String> = on.iter().map(|&k| mesh.node_ids[k as usize].to_string()).collect();
             let nodes = nodes.join(", ");
@@ -109,7 +111,7 @@ fn folded(mesh: &CellMesh) -> Option<Defect> {
 }
 
 /// The corners of a side of a cell.
-fn corners(mesh: &CellMesh, cell: usize, side: usize) -> Vec<u32> {
+fn corners(mesh: &CellMesh, cell: usize, side: usize) -> ArrayVec<u32, 4> {
     let n = mesh.cells.kind(cell).sides()[side].kind.corners();
     mesh.cells.side_nodes(cell, side).take(n).collect()
 }
@@ -129,7 +131,7 @@ fn ahead(mesh: &CellMesh, cell: usize, on: &[u32]) -> f64 {
     let mean = |points: &[[f64; 3]]| {
         [0, 1, 2].map(|d| points.iter().map(|p| p[d]).sum::<f64>() / points.len() as f64)
     };
-    let on: Vec<[f64; 3]> = on.iter().map(|&k| mesh.points[k as usize]).collect();
+    let on: ArrayVec<[f64; 3], 4> = on.iter().map(|&k| mesh.points[k as usize]).collect();
     let along = minus(on[1], on[0]);
     let normal = match on[..] {
         [_, _] => [along[1], -along[0], 0.0],
@@ -227,6 +229,14 @@ fn on_arc(ends: &[[f64; 3]], m: [f64; 3], x: [f64; 3], near: f64) -> bool {
     let bend = [0, 1, 2].map(|d| 0.5 * (a[d] + b[d]) - m[d]);
     let chord = [0, 1, 2].map(|d| 0.5 * (b[d] - a[d]));
     let away = |t: f64| [0, 1, 2].map(|d| m[d] + t * (chord[d] + t * bend[d]) - x[d]);
+    let reach = near.max(ON_ARC * norm(bend));
+    // The curve is nowhere farther from its chord than in the middle.
+    let from = [0, 1, 2].map(|d| x[d] - m[d] - bend[d]);
+    let along = (dot(from, chord) / dot(chord, chord)).clamp(-1.0, 1.0);
+    let beside = norm([0, 1, 2].map(|d| from[d] - along * chord[d]));
+    if beside > norm(bend) + reach {
+        return false;
+    }
     // The nearest point: Newton's method for the smallest of the distances at a few points.
     let samples = (-8..=8).map(|k| f64::from(k) / 8.0);
     let Some(mut t) = samples.min_by(|s, t| norm(away(*s)).total_cmp(&norm(away(*t)))) else {
@@ -239,7 +249,6 @@ fn on_arc(ends: &[[f64; 3]], m: [f64; 3], x: [f64; 3], near: f64) -> bool {
             t = (t - dot(p, slope) / curvature).clamp(-1.0, 1.0);
         }
     }
-    let reach = near.max(ON_ARC * norm(bend));
     let nodes = [a, b, m];
     norm(away(t)) <= reach && nodes.iter().all(|node| norm(minus(*node, x)) > 2.0 * reach)
 }

@@ -1,5 +1,5 @@
-//! A progress line on stderr for the contact loop, redrawn in place and removed at the end. There is none where stderr
-//! is not a terminal.
+//! A progress line on stderr for the phases of a run and for the contact loop, redrawn in place and removed at the end.
+//! There is none where stderr is not a terminal.
 //!
 //! ```text
 //! load step 4 of 20, about 12 s left, contact step 3, 9 active  [######>        ] 2.3e-4 of 1.0e-8, 17 it
@@ -53,6 +53,11 @@ impl ProgressLine {
             load_step: String::new(),
             began: None,
         }
+    }
+
+    /// Shows a phase outside the iterations.
+    pub fn phase(&mut self, what: &str) {
+        self.draw(what);
     }
 
     /// Starts load step `step` of `n`, counted from 0; what is left follows from the steps since the first call.

@@ -159,6 +159,7 @@ impl Scene {
         let (mut first_dof, mut first_subdomain) = (0, 0);
         let mut cuts = cut::Cuts::default();
         let mut slack = Vec::new();
+        cuts.ahead(&spec.bodies, &spec.form, part.ranks == 1);
         for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
             cut::prepare(&mut body, &spec.form, &mut cuts)?;

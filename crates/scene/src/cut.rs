@@ -10,7 +10,8 @@ use elements::element::{self, Doubt, Integration};
 use elements::form::Form;
 use mesh::partition::{subdomains_for, Interface, Partition, Sharing};
 use mesh::{congruent, second_order, BoxMesh, CellMesh, Mesh, MeshFingerprint, MeshPartition};
-use std::collections::HashMap;
+use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Gives a body its final mesh. A copy of a mesh in `before`, also a turned or mirrored one, is cut as that is, so that
@@ -44,12 +45,7 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     let Mesh::Cells(mesh) = &body.mesh else {
         return Ok(());
     };
-    let components = form.components(mesh.dim);
-    let n = match body.cut {
-        Cut::AsItIs => 0,
-        Cut::Auto => subdomains_for(mesh.points.len() * components, mesh.dim),
-        Cut::Into(n) => n,
-    };
+    let n = wanted(body, mesh, form);
     let whole = body.integration.is_empty();
     let key = (Arc::as_ptr(mesh) as usize, n);
     if let (true, Some((_, done))) = (whole, before.copies.get(&key)) {
@@ -77,6 +73,15 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     Ok(())
 }
 
+/// The number of subdomains into which a mesh is to be cut; 0 if it stays as it is.
+fn wanted(body: &BodySpec, mesh: &CellMesh, form: &Form) -> usize {
+    match body.cut {
+        Cut::AsItIs => 0,
+        Cut::Auto => subdomains_for(mesh.points.len() * form.components(mesh.dim), mesh.dim),
+        Cut::Into(n) => n,
+    }
+}
+
 /// The motions without energy of a body's mesh beyond the rigid ones. Where subdomains share nodes that they move,
 /// these become vertices, so that no subdomain has such a motion by itself.
 pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<ZeroEnergyMode> {
@@ -102,8 +107,8 @@ pub(super) fn slack(body: &mut BodySpec, form: &Form) -> Vec<ZeroEnergyMode> {
 /// The meshes that are known so far.
 #[derive(Default)]
 pub(super) struct Cuts {
-    /// The meshes that have been cut, each with the number of subdomains that it was to have.
-    cut: Vec<(usize, MeshFingerprint, Arc<CellMesh>)>,
+    /// The meshes that have been cut.
+    cut: Vec<KnownCut>,
     /// Meshes that copies share, by where they are in memory: as they were, and what has become of them. The number is
     /// 0 for those that stay as they are.
     copies: HashMap<(usize, usize), (Arc<CellMesh>, Arc<CellMesh>)>,
@@ -113,21 +118,76 @@ pub(super) struct Cuts {
     of_box: Option<(BoxMesh, Option<Map>, Arc<CellMesh>)>,
 }
 
+/// A mesh that has been cut.
+struct KnownCut {
+    /// Number of subdomains that it was to have.
+    n: usize,
+    outline: MeshFingerprint,
+    /// The mesh as it was.
+    whole: Arc<CellMesh>,
+    /// The mesh with its subdomains.
+    mesh: Arc<CellMesh>,
+}
+
+impl KnownCut {
+    fn is_of(&self, mesh: &Arc<CellMesh>, outline: &MeshFingerprint, n: usize) -> bool {
+        let copy = || self.outline.may_be(outline) && congruent(&self.whole, mesh);
+        self.n == n && (Arc::ptr_eq(&self.whole, mesh) || copy())
+    }
+}
+
 impl Cuts {
+    /// Cuts the meshes of bodies, one of those that are copies of each other; with all threads if `alone` on the
+    /// machine.
+    pub fn ahead(&mut self, bodies: &[BodySpec], form: &Form, alone: bool) {
+        let mut seen = HashSet::new();
+        for body in bodies {
+            let Mesh::Cells(mesh) = &body.mesh else {
+                continue;
+            };
+            let n = wanted(body, mesh, form);
+            if n == 0 || !seen.insert((Arc::as_ptr(mesh), n)) {
+                continue;
+            }
+            let outline = MeshFingerprint::new(mesh);
+            if !self.cut.iter().any(|k| k.is_of(mesh, &outline, n)) {
+                self.cut.push(KnownCut {
+                    n,
+                    outline,
+                    whole: mesh.clone(),
+                    mesh: mesh.clone(),
+                });
+            }
+        }
+        let cut = |known: &mut KnownCut| cut(Arc::make_mut(&mut known.mesh), known.n);
+        match alone {
+            true => self.cut.par_iter_mut().with_max_len(1).for_each(cut),
+            false => self.cut.iter_mut().for_each(cut),
+        }
+    }
+
     /// Cuts a mesh as the first of its copies was cut.
     fn cut(&mut self, mesh: &mut Arc<CellMesh>, n: usize) {
         let outline = MeshFingerprint::new(mesh);
-        let like = |(of, outlined, known): &&(usize, MeshFingerprint, Arc<CellMesh>)| {
-            *of == n && outlined.may_be(&outline) && congruent(known, mesh)
-        };
-        if let Some((_, _, known)) = self.cut.iter().find(like) {
-            let mesh = Arc::make_mut(mesh);
-            mesh.parts = known.parts.clone();
-            mesh.forget_adjacency();
-            return;
+        let known = self.cut.iter().find(|k| k.is_of(mesh, &outline, n));
+        match known {
+            Some(known) if Arc::ptr_eq(&known.whole, mesh) => *mesh = known.mesh.clone(),
+            Some(known) => {
+                let mesh = Arc::make_mut(mesh);
+                mesh.parts = known.mesh.parts.clone();
+                mesh.forget_adjacency();
+            }
+            None => {
+                let whole = mesh.clone();
+                cut(Arc::make_mut(mesh), n);
+                self.cut.push(KnownCut {
+                    n,
+                    outline,
+                    whole,
+                    mesh: mesh.clone(),
+                });
+            }
         }
-        cut(Arc::make_mut(mesh), n);
-        self.cut.push((n, outline, mesh.clone()));
     }
 }
 

@@ -270,19 +270,46 @@ pub struct ErrorNorms {
     pub energy_norm: f64,
 }
 
-/// Wall-clock seconds of `solve` by phase.
+/// Wall-clock seconds of `solve` by phase; `total` is their sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Seconds {
-    /// Mesh and matrices.
+    /// Files, checks, subdomains and rows.
+    #[serde(default)]
+    pub read: f64,
+    /// Matrices and loads.
     pub assemble: f64,
-    /// Factorisations and coarse problems.
+    /// Factorisations and coarse problems, also those between load steps.
     pub setup: f64,
     /// Iterations.
     pub solve: f64,
     /// The recovery of u from λ.
     pub recover: f64,
-    /// The whole run, input and output included.
+    /// The certificate, balances, probes, spectra and checks of the solution.
+    #[serde(default)]
+    pub evaluate: f64,
+    /// Fields and pictures.
+    #[serde(default)]
+    pub write: f64,
+    /// The whole run but for this report.
     pub total: f64,
+}
+
+impl Seconds {
+    /// The run has taken `total`; what no other phase took is evaluation.
+    pub fn end(&mut self, total: f64) {
+        let Seconds {
+            read,
+            assemble,
+            setup,
+            solve,
+            recover,
+            write,
+            ..
+        } = *self;
+        let others = read + assemble + setup + solve + recover + write;
+        self.evaluate = (total - others).max(0.0);
+        self.total = total;
+    }
 }
 
 #[cfg(test)]

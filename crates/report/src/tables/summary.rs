@@ -143,8 +143,8 @@ pub fn solve(r: &SolveReport) -> String {
     lines.push((
         "seconds",
         format!(
-            "{:.3} (assemble {:.3}, set-up {:.3}, solve {:.3}, recover {:.3})",
-            s.total, s.assemble, s.setup, s.solve, s.recover
+            "{:.3} (read {:.3}, assemble {:.3}, set-up {:.3}, solve {:.3}, recover {:.3}, evaluate {:.3}, write {:.3})",
+            s.total, s.read, s.assemble, s.setup, s.solve, s.recover, s.evaluate, s.write
         ),
     ));
     if let Some(o) = r.operators.filter(|o| o.sparse > 0) {

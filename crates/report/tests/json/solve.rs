@@ -107,7 +107,10 @@ fn solve_report_has_the_promised_keys() {
         value["condition"],
         json!({"exact": null, "estimate": estimate})
     );
-    for key in ["assemble", "setup", "solve", "recover", "total"] {
+    let phases = [
+        "read", "assemble", "setup", "solve", "recover", "evaluate", "write", "total",
+    ];
+    for key in phases {
         assert!(value["seconds"][key].is_number(), "{key}");
     }
     assert!(value.get("error").is_none() && value.get("contact").is_none());
