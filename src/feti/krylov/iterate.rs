@@ -10,7 +10,7 @@ use crate::{Error, Result};
 use petsc::{ConvergedReason, Ksp, LargeEigenvalue, Stopped, Vec as PetscVec};
 
 /// An iteration is no longer broken off if its residual is less than this many times its tolerance.
-const NEARLY: f64 = 30.0;
+pub(super) const NEARLY: f64 = 30.0;
 
 /// A run is looked at whenever its residual has fallen by this factor since the last look.
 const LOOK: f64 = 0.3;

@@ -5,7 +5,7 @@
 //! What comes before an iteration and after it, the projection of the load, the displacements and their certificate, is
 //! [`LinearMethod::solve_for_host`]'s, one load after the other.
 
-use super::iterate::{KrylovRun, NOISE};
+use super::iterate::{KrylovRun, Watch, NEARLY, NOISE};
 use super::loads::Loads;
 use super::residual::{Iterate, ROUNDING};
 use super::tally::ClockReadings;
@@ -41,6 +41,8 @@ struct Column {
     ap: PetscVec,
     /// rᵀ M⁻¹ r of the last step; 0 before the first.
     rho: f64,
+    /// The largest eigenvalue, compared with the one at which an iteration is broken off.
+    spectrum: LargestEigenvalue,
     residuals: Vec<f64>,
     state: State,
 }
@@ -49,21 +51,47 @@ struct Column {
 enum State {
     Running,
     Converged,
-    /// Rounding has made a direction indefinite.
+    /// Rounding has made a direction indefinite, or an eigenvalue is large: the load is to be solved alone.
     Lost,
+}
+
+/// The last pivot of T − τ I, with T the Lanczos matrix of CG: a positive one shows an eigenvalue above τ (Sturm).
+#[derive(Default)]
+struct LargestEigenvalue {
+    /// α and β of the last step; α is 0 before the first.
+    alpha: f64,
+    beta: f64,
+    pivot: f64,
+    /// Whether there has been a positive pivot.
+    beyond: bool,
+}
+
+impl LargestEigenvalue {
+    /// Adds a step of CG: `beta` led to its direction, `alpha` is its length.
+    fn add(&mut self, alpha: f64, tau: f64) {
+        self.pivot = match self.alpha {
+            last if last > 0.0 => {
+                let above = self.beta / last;
+                1.0 / alpha + above - tau - above / last / self.pivot
+            }
+            _ => 1.0 / alpha - tau,
+        };
+        self.alpha = alpha;
+        self.beyond |= self.pivot > 0.0;
+    }
 }
 
 impl LinearMethod {
     /// Runs the iterations for several loads, one [`Begun`] for each. `None` in the place of a load that is to be
-    /// solved alone, because rounding has ended its iteration; for all loads where the Krylov method is not CG, where
-    /// eigenvalues are deflated or may be, or where rows have springs. Collective.
+    /// solved alone, because rounding has ended its iteration, or because it has found an eigenvalue that is to be
+    /// deflated; for all loads where the Krylov method is not CG, where eigenvalues are deflated already, or where rows
+    /// have springs. Collective.
     ///
     /// # Errors
     /// A load that moves a body which nothing holds; PETSc's own errors.
     pub fn together(&self, loads: Vec<Loads>) -> Result<Vec<Option<Begun>>> {
         let n = loads.len();
         let plain = self.ksp.type_name()? == "cg"
-            && self.watch().is_none()
             && self.system.is_undeflated()
             && !self.dual().stiffness.has_springs();
         let mut begun: Vec<Option<Begun>> = (0..n).map(|_| None).collect();
@@ -76,9 +104,10 @@ impl LinearMethod {
             columns.push(self.column(load, loads)?);
         }
         let counted = ClockReadings::now();
+        let watch = self.watch();
         let mut iterations = 0;
         while iterations < max_it && columns.iter().any(|c| c.state == State::Running) {
-            self.advance(&mut columns)?;
+            self.advance(&mut columns, watch)?;
             iterations += 1;
             let running = columns.iter().filter_map(|c| c.residuals.last().copied());
             self.ksp.monitor(iterations, running.fold(0.0, f64::max))?;
@@ -121,6 +150,7 @@ impl LinearMethod {
             lambda,
             r: residual.r,
             rho: 0.0,
+            spectrum: LargestEigenvalue::default(),
             residuals: vec![norm],
             state: match nothing {
                 true => State::Converged,
@@ -132,7 +162,7 @@ impl LinearMethod {
     }
 
     /// One step of CG in all columns that run. Collective.
-    fn advance(&self, columns: &mut [Column]) -> Result<()> {
+    fn advance(&self, columns: &mut [Column], watch: Option<Watch>) -> Result<()> {
         let mut running: Vec<&mut Column> = columns
             .iter_mut()
             .filter(|c| c.state == State::Running)
@@ -147,6 +177,7 @@ impl LinearMethod {
                 0.0
             };
             column.p.aypx(beta, &column.z)?; /*                                            p ← z + β p   */
+            column.spectrum.beta = beta;
             column.rho = rho;
         }
         self.system
@@ -158,6 +189,9 @@ impl LinearMethod {
                 continue;
             }
             let alpha = column.rho / curvature;
+            if let Some(watch) = watch {
+                column.spectrum.add(alpha, watch.limit);
+            }
             column.x.axpy(alpha, &column.p)?; /*                                           x ← x + α p   */
             column.r.axpy(-alpha, &column.ap)?; /*                                         r ← r − α A p */
         }
@@ -165,8 +199,14 @@ impl LinearMethod {
         for (column, square) in running.into_iter().zip(squares) {
             let norm = square.sqrt();
             column.residuals.push(norm);
+            let late = |watch: Watch| {
+                let steps = column.residuals.len() - 1;
+                steps >= watch.from && norm > NEARLY * column.tolerance
+            };
             if column.state == State::Running && norm <= column.tolerance {
                 column.state = State::Converged;
+            } else if column.spectrum.beyond && watch.is_some_and(late) {
+                column.state = State::Lost;
             }
         }
         Ok(())
@@ -219,3 +259,7 @@ impl Column {
         }))
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/krylov/together.rs"]
+mod tests;
