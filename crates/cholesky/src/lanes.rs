@@ -11,7 +11,8 @@ use super::sweep::SweepValue;
 /// Number of right-hand sides that are solved together.
 pub const LANES: usize = 8;
 
-type Lane = [f64; LANES];
+/// The values of one unknown.
+pub type Lane = [f64; LANES];
 
 // Iterators over pairs would be calls of functions where the compiler does not see them.
 #[inline(always)]

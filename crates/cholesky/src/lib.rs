@@ -15,6 +15,7 @@
 //! | [`panel`], `strips` | how the columns of a front lie in memory, and those of its update |
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
+//! | [`reached`] | solves that some dofs alone take part in |
 //! | `null_vector` | null vectors of a semidefinite matrix |
 //! | `deal`, [`team`], `narrow`, [`shared`] | which rank has which front, the ranks that share a factor, what each of them knows, and the factor |
 //! | [`interior`] | the face for subdomains: one analysis for a pattern, a factor and S for each matrix |
@@ -32,6 +33,7 @@ mod narrow;
 mod nodes;
 mod null_vector;
 pub mod panel;
+pub mod reached;
 pub mod shared;
 mod strips;
 pub mod substitution;

@@ -6,11 +6,13 @@
 use super::scaled::ScaledSubdomain;
 use super::which::Operator;
 use base::linalg::dense::Dense;
+use cholesky::lanes::LANES;
+use cholesky::reached::Ordered;
 
-/// The result of the first half that the second goes on with, a column for each load; empty where Ψ is stored, and of
-/// loads that vanish.
+/// The result of the first half that the second goes on with, up to [`LANES`] loads side by side; empty where Ψ is
+/// stored, and of loads that vanish.
 #[derive(Debug, Clone, Default)]
-pub struct Halfway(Vec<Vec<f64>>);
+pub struct Halfway(Vec<Ordered>);
 
 impl ScaledSubdomain {
     /// Whether Ψ is not stored.
@@ -39,7 +41,7 @@ impl ScaledSubdomain {
         // Nobody shares the factor: φ = 1.
         let (half, values) = solves.held().begin(&[v]);
         p.copy_from_slice(&values[0]);
-        Halfway(half)
+        Halfway(vec![half])
     }
 
     /// y ← T v + Ψ c from the first half of v. Only where Ψ is not stored.
@@ -48,13 +50,11 @@ impl ScaledSubdomain {
         let Some(solves) = self.kind().in_halves() else {
             return;
         };
-        let Halfway(mut half) = half;
-        if half.is_empty() {
-            if c.iter().all(|c| *c == 0.0) {
-                return;
-            }
-            half.push(solves.held().nothing());
+        let half = half.0.into_iter().next();
+        if half.is_none() && c.iter().all(|c| *c == 0.0) {
+            return;
         }
+        let half = half.unwrap_or_else(|| solves.held().nothing(1));
         let done = solves.held().finish(half, &[c]);
         let (delta, vertices) = y.split_at_mut(self.gamma().n_delta);
         delta.copy_from_slice(&done[0]);
@@ -78,11 +78,15 @@ impl ScaledSubdomain {
             return Halfway::default();
         };
         let columns: Vec<&[f64]> = (0..v.cols).map(|c| v.col(c)).collect();
-        let (half, values) = solves.held().begin(&columns);
-        for (c, values) in values.iter().enumerate() {
-            p.col_mut(c).copy_from_slice(values);
+        let mut halves = Vec::new();
+        for (k, some) in columns.chunks(LANES).enumerate() {
+            let (half, values) = solves.held().begin(some);
+            halves.push(half);
+            for (c, values) in values.iter().enumerate() {
+                p.col_mut(LANES * k + c).copy_from_slice(values);
+            }
         }
-        Halfway(half)
+        Halfway(halves)
     }
 
     /// Y ← T V + Ψ C on Γ.
@@ -100,9 +104,11 @@ impl ScaledSubdomain {
             return;
         };
         let columns: Vec<&[f64]> = (0..c.cols).map(|k| c.col(k)).collect();
-        for (k, done) in solves.held().finish(half.0, &columns).iter().enumerate() {
+        let chunks = half.0.into_iter().zip(columns.chunks(LANES));
+        let done = chunks.flat_map(|(half, some)| solves.held().finish(half, some));
+        for (k, done) in done.enumerate() {
             let (delta, vertices) = y.col_mut(k).split_at_mut(n);
-            delta.copy_from_slice(done);
+            delta.copy_from_slice(&done);
             vertices.copy_from_slice(&c.col(k)[..vertices.len()]);
         }
     }

@@ -17,6 +17,7 @@ use cholesky::dissection::nested_dissection;
 use cholesky::interior::Analysis;
 use cholesky::lanes::LANES;
 use cholesky::multifrontal::PartialCholesky;
+use cholesky::reached::{Ordered, ReachedFronts};
 use cholesky::symbolic::Symbolic;
 
 /// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
@@ -37,9 +38,10 @@ pub fn vectors(delta: &[u32], basis: &Basis) -> Vec<AverageVector> {
 #[derive(Debug)]
 pub struct Held {
     factor: PartialCholesky,
-    /// Local dofs of Δ, and of the vertices.
-    delta: Vec<u32>,
-    vertices: Vec<u32>,
+    /// Δ, and the fronts that it reaches: loads are there, and the solution is wanted there.
+    delta: ReachedFronts,
+    n_delta: usize,
+    n_vertices: usize,
     /// M⁻¹.
     m_inverse: Dense,
     /// μ of every coarse function, a column for each: M⁻¹ [A, −D].
@@ -76,7 +78,7 @@ impl Held {
         if factor.weakest_pivot(&k) <= WEAKLY_HELD {
             return None;
         }
-        let [delta, vertices] = interface.map(<[u32]>::to_vec);
+        let [delta, vertices] = interface;
         let (n_v, n_q) = (vertices.len(), averages.len());
         let a = Dense::from_fn(n_q, n_v, |i, j| s.get(n_v + i, j));
         let mut m = Dense::from_fn(n_q, n_q, |i, j| -s.get(n_v + i, n_v + j));
@@ -100,77 +102,53 @@ impl Held {
         }
         sigma.symmetrise();
         let held = Held {
+            delta: factor.reached(delta),
+            n_delta: delta.len(),
+            n_vertices: n_v,
             factor,
-            delta,
-            vertices,
             m_inverse,
             mu,
         };
         Some((held, sigma))
     }
 
-    /// Number of dofs of the subdomain.
-    fn n(&self) -> usize {
-        self.factor.n() - self.mu.rows
-    }
-
-    /// The way forward for loads on Γ = [Δ, vertices]: what [`finish`](Self::finish) goes on with, and Ψᵀ v.
-    pub fn begin(&self, v: &[&[f64]]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let load = |v: &&[f64]| {
-            let mut x = vec![0.0; self.factor.n()];
-            let on_delta = self.delta.iter().zip(*v);
-            on_delta.for_each(|(&i, v)| x[i as usize] = *v);
-            x
-        };
-        let mut x: Vec<Vec<f64>> = v.iter().map(load).collect();
-        match &mut x[..] {
-            [one] => self.factor.forward(one),
-            several => several
-                .chunks_mut(LANES)
-                .for_each(|x| self.factor.forward_many(x)),
-        }
-        let values = |(x, v): (&Vec<f64>, &&[f64])| {
-            let vertices = self.vertices.iter().zip(&v[self.delta.len()..]);
-            let mut p: Vec<f64> = vertices.map(|(&i, v)| x[i as usize] + v).collect();
+    /// The way forward for at most [`LANES`] loads on Γ = [Δ, vertices]: what [`finish`](Self::finish) goes on with,
+    /// and Ψᵀ v.
+    pub fn begin(&self, v: &[&[f64]]) -> (Ordered, Vec<Vec<f64>>) {
+        let x = self.factor.forward_at(&self.delta, v);
+        let values = |(c, v): (usize, &&[f64])| {
+            let border = self.factor.on_interface(&x, c);
+            let (vertices, averages) = border.split_at(self.n_vertices);
+            let own = v[v.len() - self.n_vertices..].iter();
+            let mut p: Vec<f64> = vertices.iter().zip(own).map(|(x, v)| x + v).collect();
             p.resize(self.mu.cols, 0.0);
             // What the load leaves at the averages is −Qᵀ K_rr⁻¹ v.
-            self.mu.add_mul_transpose(&x[self.n()..], &mut p);
+            self.mu.add_mul_transpose(averages, &mut p);
             p
         };
-        let p = x.iter().zip(v).map(values).collect();
+        let p = v.iter().enumerate().map(values).collect();
         (x, p)
     }
 
     /// T v + Ψ c on Δ, from what [`begin`](Self::begin) has left of v.
-    pub fn finish(&self, mut x: Vec<Vec<f64>>, c: &[&[f64]]) -> Vec<Vec<f64>> {
-        let n = self.n();
-        for (x, c) in x.iter_mut().zip(c) {
+    pub fn finish(&self, mut x: Ordered, c: &[&[f64]]) -> Vec<Vec<f64>> {
+        for (column, c) in c.iter().enumerate() {
+            let border = self.factor.on_interface(&x, column);
             let mut mu = vec![0.0; self.mu.rows];
-            self.m_inverse.add_mul(&x[n..], &mut mu);
+            self.m_inverse.add_mul(&border[self.n_vertices..], &mut mu);
             mu.iter_mut().for_each(|mu| *mu = -*mu);
             self.mu.add_mul(c, &mut mu);
-            x[n..].copy_from_slice(&mu);
-            let at = self.vertices.iter().zip(*c);
-            at.for_each(|(&i, c)| x[i as usize] = *c);
+            let border = [&c[..self.n_vertices], &mu].concat();
+            self.factor.set_interface(&mut x, column, &border);
         }
-        match &mut x[..] {
-            [one] => self.factor.backward(one),
-            several => several
-                .chunks_mut(LANES)
-                .for_each(|x| self.factor.backward_many(x)),
-        }
-        let on_delta = |x: &Vec<f64>| self.delta.iter().map(|&i| x[i as usize]).collect();
-        x.iter().map(on_delta).collect()
+        self.factor.backward_at(&self.delta, x)
     }
 
-    /// T v on Δ for each of `v`, of which the entries on Δ count.
+    /// T v on Δ for each of at most [`LANES`] `v`, of which the entries on Δ count.
     pub fn t(&self, v: &[&[f64]]) -> Vec<Vec<f64>> {
-        let n = self.delta.len();
         let zero = vec![0.0; self.mu.cols];
-        let load = |v: &&[f64]| [&v[..n], &zero[..self.vertices.len()]].concat();
-        let loads: Vec<Vec<f64>> = v.iter().map(load).collect();
-        let loads: Vec<&[f64]> = loads.iter().map(Vec::as_slice).collect();
-        self.finish(self.begin(&loads).0, &vec![&zero[..]; v.len()])
+        let x = self.factor.forward_at(&self.delta, v);
+        self.finish(x, &vec![&zero[..]; v.len()])
     }
 
     /// Ψ on Δ.
@@ -183,19 +161,18 @@ impl Held {
         };
         let units: Vec<Vec<f64>> = (0..n_pi).map(unit).collect();
         let units: Vec<&[f64]> = units.iter().map(Vec::as_slice).collect();
-        let mut psi = Dense::zeros(self.delta.len(), 0);
+        let mut psi = Dense::zeros(self.n_delta, 0);
         for some in units.chunks(LANES) {
-            let nothing = vec![self.nothing(); some.len()];
-            let columns = self.finish(nothing, some);
+            let columns = self.finish(self.nothing(some.len()), some);
             columns.iter().for_each(|column| psi.data.extend(column));
         }
         psi.cols = n_pi;
         psi
     }
 
-    /// An empty load, as [`begin`](Self::begin) leaves it.
-    pub fn nothing(&self) -> Vec<f64> {
-        vec![0.0; self.factor.n()]
+    /// Empty loads, as [`begin`](Self::begin) leaves them.
+    pub fn nothing(&self, columns: usize) -> Ordered {
+        self.factor.zeros(columns)
     }
 
     /// Bytes of the factor, and of the dense parts.

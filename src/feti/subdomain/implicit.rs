@@ -16,6 +16,7 @@ use base::linalg::dense::Dense;
 use cholesky::interior::{Analysed, Analysis, SparseAnalysis};
 use cholesky::lanes::LANES;
 use cholesky::multifrontal::{PartialCholesky, SingularInterior};
+use cholesky::reached::ReachedFronts;
 use cholesky::symbolic::Symbolic;
 
 /// The operators of one subdomain.
@@ -26,7 +27,10 @@ pub struct Implicit {
     /// Dofs of Γ in the order [Δ, vertices].
     interface: Vec<u32>,
     n_delta: usize,
-    /// K_IΓ and K_ΓΓ.
+    /// Places of the interior dofs that couple with Γ, and the fronts of K_II that they reach.
+    near: Vec<u32>,
+    at_near: ReachedFronts,
+    /// Their rows of K_IΓ, and K_ΓΓ.
     coupling: Csr,
     k_gamma: Csr,
     /// K_II.
@@ -76,8 +80,15 @@ impl Implicit {
             // Another thread may have left one in the meantime, which is the same.
             let _ = analysed.sparse.set(new);
         }
+        let mut on_gamma = vec![false; k.n()];
+        interface.iter().for_each(|&i| on_gamma[i as usize] = true);
+        let couples = |i: u32| k.row(i as usize).0.iter().any(|&j| on_gamma[j as usize]);
+        let near = (0..).zip(&inside).filter(|(_, &i)| couples(i));
+        let (near, near_dofs): (Vec<u32>, Vec<u32>) = near.map(|(p, &i)| (p, i)).unzip();
         let out = Implicit {
-            coupling: k.block(&inside, interface),
+            at_near: interior.reached(&near),
+            near,
+            coupling: k.block(&near_dofs, interface),
             k_gamma: k.block(interface, interface),
             interface: interface.to_vec(),
             inside,
@@ -104,7 +115,7 @@ impl Implicit {
         self.inside.len() + self.interface.len()
     }
 
-    /// A v for each of `v`, A one of the operators.
+    /// A v for each of at most [`LANES`] `v`, A one of the operators.
     pub fn apply(&self, which: Operator, v: &[&[f64]]) -> Vec<Vec<f64>> {
         match which {
             Operator::S => self.s(v),
@@ -175,22 +186,25 @@ impl Implicit {
         self.interior.solve_many(b);
     }
 
-    /// S v for each of `v` (length n_Γ).
+    /// K_IΓ u at the interior dofs that couple with Γ.
+    fn coupled(&self, u: &[f64]) -> Vec<f64> {
+        let mut b = vec![0.0; self.near.len()];
+        self.coupling.add_mul(1.0, u, &mut b);
+        b
+    }
+
+    /// S v for each of at most [`LANES`] `v` (length n_Γ).
     fn s(&self, v: &[&[f64]]) -> Vec<Vec<f64>> {
-        let inside = |v: &&[f64]| {
-            let mut b = vec![0.0; self.inside.len()];
-            self.coupling.add_mul(1.0, v, &mut b);
-            b
-        };
-        let mut b: Vec<Vec<f64>> = v.iter().map(inside).collect();
-        self.solve_interior(&mut b);
-        let back = |(v, b): (&&[f64], &Vec<f64>)| {
+        let b: Vec<Vec<f64>> = v.iter().map(|v| self.coupled(v)).collect();
+        let b: Vec<&[f64]> = b.iter().map(Vec::as_slice).collect();
+        let x = self.interior.solve_at(&self.at_near, &b);
+        let back = |(v, x): (&&[f64], &Vec<f64>)| {
             let mut y = vec![0.0; self.interface.len()];
             self.k_gamma.add_mul(1.0, v, &mut y);
-            self.coupling.add_mul_transpose(-1.0, b, &mut y);
+            self.coupling.add_mul_transpose(-1.0, x, &mut y);
             y
         };
-        v.iter().zip(&b).map(back).collect()
+        v.iter().zip(&x).map(back).collect()
     }
 
     /// Condensed loads: (K_II⁻¹ f_I on the interior dofs, zero elsewhere; g on Γ).
@@ -200,7 +214,8 @@ impl Implicit {
         self.solve_interior(&mut x);
         let of = |(f, x): (&&[f64], &Vec<f64>)| {
             let mut g: Vec<f64> = self.interface.iter().map(|&i| f[i as usize]).collect();
-            self.coupling.add_mul_transpose(-1.0, x, &mut g);
+            let near: Vec<f64> = self.near.iter().map(|&p| x[p as usize]).collect();
+            self.coupling.add_mul_transpose(-1.0, &near, &mut g);
             let mut work = vec![0.0; self.n()];
             self.inside
                 .iter()
@@ -217,7 +232,8 @@ impl Implicit {
         let lift = |x: &Vec<f64>| {
             let u: Vec<f64> = self.interface.iter().map(|&i| x[i as usize]).collect();
             let mut b = vec![0.0; self.inside.len()];
-            self.coupling.add_mul(1.0, &u, &mut b);
+            let near = self.near.iter().zip(self.coupled(&u));
+            near.for_each(|(&p, v)| b[p as usize] = v);
             b
         };
         let mut b: Vec<Vec<f64>> = x.iter().map(lift).collect();
