@@ -37,6 +37,8 @@ pub struct SingularInterior {
 pub struct PartialCholesky {
     pub(crate) symbolic: Arc<Symbolic>,
     pub(crate) panels: Vec<f64>,
+    /// The smallest pivot relative to the diagonal entry that it came from; one where nothing was eliminated.
+    pub(crate) weakest: f64,
 }
 
 impl PartialCholesky {
@@ -46,18 +48,13 @@ impl PartialCholesky {
     }
 
     /// Factors the interior of `k` and returns the factor with S, but stores only the part of the factor that `inside`
-    /// lists: this part can [`solve`](Self::solve), but not condense.
+    /// lists: without the rows of the interface it can [`solve`](Self::solve), but not condense.
     pub fn inside(
         k: &Csr,
         symbolic: &Symbolic,
         inside: Arc<Symbolic>,
     ) -> Result<(Self, Dense), SingularInterior> {
-        let (panels, s) = factor(k, symbolic, &inside, Pivots::Regular)?;
-        let factor = PartialCholesky {
-            symbolic: inside,
-            panels,
-        };
-        Ok((factor, s))
+        factor(k, symbolic, inside, Pivots::Regular)
     }
 
     /// The factor of a semidefinite `k` without an interface, and the dofs that it leaves out: those with a pivot below
@@ -67,8 +64,8 @@ impl PartialCholesky {
         debug_assert!(symbolic.interface.is_empty());
         let mut left = Vec::new();
         let pivots = Pivots::Above(least, &mut left);
-        let (panels, _) = factor(k, &symbolic, &symbolic, pivots).expect("no pivot is too small");
-        (PartialCholesky { symbolic, panels }, left)
+        let made = factor(k, &symbolic.clone(), symbolic, pivots);
+        (made.expect("no pivot is too small").0, left)
     }
 
     /// Number of dofs.
@@ -76,9 +73,10 @@ impl PartialCholesky {
         self.symbolic.n()
     }
 
-    /// The smallest pivot relative to the diagonal entry of `k` that it came from; one where nothing was eliminated.
-    pub fn weakest_pivot(&self, k: &Csr) -> f64 {
-        self.relative_pivots(k).map(|p| p.1).fold(1.0, f64::min)
+    /// The smallest pivot relative to the diagonal entry that it came from, at most one. Of a shared factor it is that
+    /// of the own fronts.
+    pub fn weakest_pivot(&self) -> f64 {
+        self.weakest
     }
 
     /// The dofs with a pivot below `bound`, relative to the diagonal entry of `k` that it came from, in the order of
@@ -115,20 +113,25 @@ pub(super) enum Pivots<'a> {
     Above(f64, &'a mut Vec<u32>),
 }
 
-/// Returns S and the panels of the fronts in `kept`.
+/// Returns the factor with the fronts in `kept`, and S.
 fn factor(
     k: &Csr,
     sym: &Symbolic,
-    kept: &Symbolic,
+    kept: Arc<Symbolic>,
     mut pivots: Pivots<'_>,
-) -> Result<(Vec<f64>, Dense), SingularInterior> {
-    let mut elimination = Elimination::new(k, sym, kept);
+) -> Result<(PartialCholesky, Dense), SingularInterior> {
+    let mut elimination = Elimination::new(k, sym, &kept);
     for f in 0..sym.fronts.len() {
         elimination.front(f, &mut pivots, &mut || ())?;
     }
-    let Elimination { panels, mut s, .. } = elimination;
+    let (panels, weakest, mut s) = (elimination.panels, elimination.weakest, elimination.s);
     s.mirror_lower();
-    Ok((panels, s))
+    let factor = PartialCholesky {
+        symbolic: kept,
+        panels,
+        weakest,
+    };
+    Ok((factor, s))
 }
 
 /// A factorisation on its way from the leaves to the root.
@@ -138,6 +141,8 @@ pub(super) struct Elimination<'a> {
     kept: &'a Symbolic,
     /// The panels of the fronts in `kept`.
     pub panels: Vec<f64>,
+    /// The smallest pivot so far, relative to the diagonal entry that it came from.
+    pub weakest: f64,
     /// S so far.
     s: Dense,
     /// Updates of fronts for their parents: lower triangles of the rows below, until the parents take them.
@@ -161,6 +166,7 @@ impl<'a> Elimination<'a> {
             sym,
             kept,
             panels: Vec::with_capacity(kept.storage),
+            weakest: 1.0,
             s: schur_start(k, sym),
             updates: sym.fronts.iter().map(|_| SchurUpdate::default()).collect(),
             spare: Vec::new(),
@@ -203,7 +209,7 @@ impl<'a> Elimination<'a> {
         let panel = &mut self.room;
         panel.become_zero(size, width);
         let order = size - width;
-        let mut update = room_for(&mut self.spare, strips::length(order));
+        let mut update = strips::room_for(&mut self.spare, strips::length(order));
 
         for (l, &p) in front.below.iter().enumerate() {
             place[p as usize] = (width + l) as u32;
@@ -252,6 +258,9 @@ impl<'a> Elimination<'a> {
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }
+        for (j, d) in diagonal.iter().enumerate() {
+            self.weakest = self.weakest.min(panel.get(j, j).powi(2) / d);
+        }
         for &c in &self.children[f] {
             let left = std::mem::take(&mut self.updates[c]);
             add_to_update(
@@ -264,7 +273,9 @@ impl<'a> Elimination<'a> {
         }
         let into = &self.kept.fronts[f];
         debug_assert_eq!(into.panel, self.panels.len());
-        panel::append(&panel.data, size, width, into.size(), &mut self.panels);
+        if into.width() > 0 {
+            panel::append(&panel.data, size, width, into.size(), &mut self.panels);
+        }
         match front.parent {
             Some(t) => {
                 self.updates[f] = SchurUpdate::Strips(update);
@@ -277,20 +288,6 @@ impl<'a> Elimination<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// Memory for `n` numbers, which may be longer and have any entries: of what is spare the shortest that suffices.
-fn room_for(spare: &mut Vec<Vec<f64>>, n: usize) -> Vec<f64> {
-    let suffices = (0..spare.len()).filter(|&i| spare[i].len() >= n);
-    match suffices.min_by_key(|&i| spare[i].len()) {
-        Some(i) => spare.swap_remove(i),
-        None => {
-            // The longest one makes room for it.
-            let longest = (0..spare.len()).max_by_key(|&i| spare[i].len());
-            longest.map(|i| spare.swap_remove(i));
-            vec![0.0; n]
-        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::lanes::{Lane, LANES};
 use super::multifrontal::PartialCholesky;
-use super::symbolic::Front;
+use super::symbolic::{Front, Symbolic};
 
 /// Some interior dofs of a factor, and the fronts that they reach.
 #[derive(Debug, Clone)]
@@ -37,29 +37,9 @@ impl Ordered {
 }
 
 impl PartialCholesky {
-    /// The fronts that these interior dofs reach.
-    ///
-    /// # Panics
-    /// If one of them is on the interface.
+    /// The fronts that these interior dofs reach; see [`Symbolic::reached`].
     pub fn reached(&self, dofs: &[u32]) -> ReachedFronts {
-        let symbolic = &self.symbolic;
-        let mut place = vec![u32::MAX; symbolic.n()];
-        let interior = symbolic.interior.iter().zip(0..);
-        interior.for_each(|(&dof, p)| place[dof as usize] = p);
-        let places: Vec<u32> = dofs.iter().map(|&dof| place[dof as usize]).collect();
-        let fronts = &symbolic.fronts;
-        let of = |p: u32| fronts.partition_point(|f| f.end <= p as usize);
-        let mut reached = vec![false; fronts.len()];
-        places.iter().for_each(|&p| reached[of(p)] = true);
-        // The parent of a front eliminates the first row below it, and comes after it.
-        for (f, front) in fronts.iter().enumerate() {
-            let parent = front.below.first().map(|&p| of(p));
-            if let (true, Some(parent)) = (reached[f], parent.filter(|&p| p < fronts.len())) {
-                reached[parent] = true;
-            }
-        }
-        let fronts = (0..).zip(reached).filter(|f| f.1).map(|f| f.0).collect();
-        ReachedFronts { places, fronts }
+        self.symbolic.reached(dofs)
     }
 
     fn fronts_of<'a>(
@@ -144,6 +124,43 @@ impl PartialCholesky {
             Ordered::Many(x, _) => x[n..].fill(Lane::default()),
         }
         self.backward_at(at, x)
+    }
+}
+
+impl Symbolic {
+    /// The fronts that these interior dofs reach.
+    ///
+    /// # Panics
+    /// If one of them is on the interface.
+    pub fn reached(&self, dofs: &[u32]) -> ReachedFronts {
+        let mut place = vec![u32::MAX; self.n()];
+        let interior = self.interior.iter().zip(0..);
+        interior.for_each(|(&dof, p)| place[dof as usize] = p);
+        let places: Vec<u32> = dofs.iter().map(|&dof| place[dof as usize]).collect();
+        let fronts = &self.fronts;
+        let of = |p: u32| fronts.partition_point(|f| f.end <= p as usize);
+        let mut reached = vec![false; fronts.len()];
+        places.iter().for_each(|&p| reached[of(p)] = true);
+        // The parent of a front eliminates the first row below it, and comes after it.
+        for (f, front) in fronts.iter().enumerate() {
+            let parent = front.below.first().map(|&p| of(p));
+            if let (true, Some(parent)) = (reached[f], parent.filter(|&p| p < fronts.len())) {
+                reached[parent] = true;
+            }
+        }
+        let fronts = (0..).zip(reached).filter(|f| f.1).map(|f| f.0).collect();
+        ReachedFronts { places, fronts }
+    }
+
+    /// The structure of a factor of which only these fronts are stored, for solves that go through them.
+    pub(crate) fn only(&self, at: &ReachedFronts) -> Symbolic {
+        let fronts = self.fronts.iter().enumerate().map(|(f, front)| {
+            match at.fronts.binary_search(&(f as u32)) {
+                Ok(_) => (front.start, front.width(), front.below.clone()),
+                Err(_) => (front.start, 0, Vec::new()),
+            }
+        });
+        Symbolic::of_factor(self.interior.clone(), &self.interface, fronts)
     }
 }
 

@@ -67,6 +67,7 @@ impl SharedCholesky {
         let factor = PartialCholesky {
             symbolic: team.symbolic.clone(),
             panels: elimination.panels,
+            weakest: elimination.weakest,
         };
         let work = vec![0.0; team.symbolic.n()].into();
         (SharedCholesky { team, factor, work }, left)

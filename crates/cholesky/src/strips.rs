@@ -109,6 +109,20 @@ impl SchurUpdate {
     }
 }
 
+/// Memory for `n` numbers, which may be longer and have any entries: of what is spare the shortest that suffices.
+pub fn room_for(spare: &mut Vec<Vec<f64>>, n: usize) -> Vec<f64> {
+    let suffices = (0..spare.len()).filter(|&i| spare[i].len() >= n);
+    match suffices.min_by_key(|&i| spare[i].len()) {
+        Some(i) => spare.swap_remove(i),
+        None => {
+            // The longest one makes room for it.
+            let longest = (0..spare.len()).max_by_key(|&i| spare[i].len());
+            longest.map(|i| spare.swap_remove(i));
+            vec![0.0; n]
+        }
+    }
+}
+
 #[cfg(test)]
 #[path = "../tests/strips.rs"]
 mod tests;

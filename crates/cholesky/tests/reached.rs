@@ -35,6 +35,14 @@ fn some_dofs_have_what_the_whole_solve_has() {
     dofs.push((n * n / 2) as u32);
     let at = factor.reached(&dofs);
     assert!(at.fronts.len() < factor.symbolic.fronts.len());
+    // The same from a factor that has nothing else.
+    let stored = Arc::new(factor.symbolic.only(&at));
+    let (small, _) = PartialCholesky::inside(&k, &factor.symbolic, stored).expect("as above");
+    assert!(small.bytes() < factor.bytes());
+    let at_small = small.reached(&dofs);
+    let load = random(dofs.len(), 3);
+    let [a, b] = [(&factor, &at), (&small, &at_small)].map(|(f, at)| f.solve_at(at, &[&load]));
+    assert_eq!(a, b);
     for columns in [1, 3, LANES] {
         let loads: Vec<Vec<f64>> = (0..columns)
             .map(|c| random(dofs.len(), 7 + c as u64))

@@ -160,7 +160,7 @@ impl Cuts {
             }
         }
         let cut = |known: &mut KnownCut| cut(Arc::make_mut(&mut known.mesh), known.n);
-        match alone {
+        match alone && self.cut.len() > 1 {
             true => self.cut.par_iter_mut().with_max_len(1).for_each(cut),
             false => self.cut.iter_mut().for_each(cut),
         }

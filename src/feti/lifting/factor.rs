@@ -129,7 +129,7 @@ fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[f64]]) -> Option<PartialChol
     }
     let symbolic = Arc::new(Symbolic::new(&a, &[], None));
     let (factor, _) = PartialCholesky::new(&a, symbolic).ok()?;
-    (factor.weakest_pivot(&a) > DEPENDENT).then_some(factor)
+    (factor.weakest_pivot() > DEPENDENT).then_some(factor)
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ const HELD: f64 = 1e-8;
 pub fn is_held(s_pi: &Csr) -> bool {
     let symbolic = Arc::new(Symbolic::new(s_pi, &[], None));
     let factor = PartialCholesky::new(s_pi, symbolic);
-    factor.is_ok_and(|(factor, _)| factor.weakest_pivot(s_pi) > HELD)
+    factor.is_ok_and(|(factor, _)| factor.weakest_pivot() > HELD)
 }
 
 /// The [`motion_factors`] of subdomains as ranks send them, with the body of each.

@@ -74,8 +74,8 @@ impl Held {
         analysis: &Analysis,
     ) -> Option<(Held, Dense)> {
         let k = bordered(k, averages);
-        let (factor, s) = analysis.bordered(&k).ok()?;
-        if factor.weakest_pivot(&k) <= WEAKLY_HELD {
+        let (factor, s) = analysis.bordered(&k, interface[0]).ok()?;
+        if factor.weakest_pivot() <= WEAKLY_HELD {
             return None;
         }
         let [delta, vertices] = interface;

@@ -49,6 +49,8 @@ pub struct Analysis {
     symbolic: Arc<Symbolic>,
     /// The fronts without the rows of the interface, built on first use.
     inside: OnceLock<Arc<Symbolic>>,
+    /// The fronts that some dofs reach, built on first use.
+    reached: OnceLock<Arc<Symbolic>>,
 }
 
 impl Analysis {
@@ -62,6 +64,7 @@ impl Analysis {
         Analysis {
             symbolic: Arc::new(symbolic),
             inside: OnceLock::new(),
+            reached: OnceLock::new(),
         }
     }
 
@@ -73,12 +76,19 @@ impl Analysis {
         PartialCholesky::inside(k, &self.symbolic, self.inside())
     }
 
-    /// Factors the interior of `k` with the rows of the interface; returns S (both triangles), too.
+    /// Factors the interior of `k` with the rows of the interface, and stores the fronts that `dofs` reach, the same in
+    /// all calls; returns S (both triangles), too.
     ///
     /// # Errors
     /// A pivot that vanishes.
-    pub fn bordered(&self, k: &Csr) -> Result<(PartialCholesky, Dense), SingularInterior> {
-        PartialCholesky::new(k, self.symbolic.clone())
+    pub fn bordered(
+        &self,
+        k: &Csr,
+        dofs: &[u32],
+    ) -> Result<(PartialCholesky, Dense), SingularInterior> {
+        let some = || Arc::new(self.symbolic.only(&self.symbolic.reached(dofs)));
+        let kept = self.reached.get_or_init(some).clone();
+        PartialCholesky::inside(k, &self.symbolic, kept)
     }
 
     /// Eliminates the interior; returns the factor and S (both triangles, in the order of the interface).
