@@ -40,8 +40,6 @@ pub(super) struct Course {
     pub iterations: Vec<usize>,
     pub solve_seconds: f64,
     pub recover_seconds: f64,
-    /// Set-ups between load steps.
-    pub setup_seconds: f64,
     /// Fields of load steps.
     pub write_seconds: f64,
     /// Rows of B_gl on rank 0.
@@ -87,7 +85,7 @@ pub(super) fn follow(
     if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
         session.agree(list_before(session, dir, &times[..first], place, pvd))?;
     }
-    let (mut seconds, mut strained) = ([0.0; 4], 0.0);
+    let (mut seconds, mut strained) = ([0.0; 3], 0.0);
     let mut fields: Option<Gathered> = None;
     let mut early = Early::new(session, stepper.scene(), stepper.solver())?;
     // From here on there are results to keep; before, a signal ends the program at once.
@@ -136,7 +134,6 @@ pub(super) fn follow(
         let rows = contact::rows(session, solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
-        seconds[2] += solved.renewal.map_or(0.0, |r| r.seconds);
         let certified = early.record(session, scene, solution, step);
         let mut now = Course {
             step,
@@ -151,7 +148,6 @@ pub(super) fn follow(
             load_steps: Vec::new(),
             solve_seconds: seconds[0],
             recover_seconds: seconds[1],
-            setup_seconds: seconds[2],
             write_seconds: 0.0,
             friction: FrictionRows::new(session, solver, &solved.solution),
             solution: solved.solution,
@@ -179,8 +175,8 @@ pub(super) fn follow(
             fields.write_vtu(session, scene, &now.solution, now.contact(), dir, &name)?;
             let file = dir.join(place.file(&name));
             on_first_rank(session, || pvd.add(t, &file))?;
-            seconds[3] += clock.elapsed().as_secs_f64();
-            now.write_seconds = seconds[3];
+            seconds[2] += clock.elapsed().as_secs_f64();
+            now.write_seconds = seconds[2];
         }
         let done = course.insert(now);
         records.outer.append(&mut done.outer);

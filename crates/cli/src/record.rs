@@ -103,6 +103,7 @@ pub(super) fn report(
         node_print: Vec::new(),
         communication: solver.communication(),
         seconds: json::Seconds {
+            setup: facts.setup_seconds,
             solve: course.solve_seconds,
             recover: course.recover_seconds,
             write: course.write_seconds,

@@ -33,8 +33,7 @@ pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
     if DeckScenes::is_deck(&args.scene) {
         return run_deck(session, &args, &destination);
     }
-    let mut phases = Phases::new(session, destination.quiet);
-    phases.begin(&reading(&args.scene));
+    let mut phases = begun(session, &args, &destination);
     let scene = distribution::load_part(session, &args.scene)?;
     phases.end();
     on_first_rank(session, || {
@@ -48,6 +47,7 @@ pub fn run(session: &Session, args: SolveArguments) -> Result<()> {
 /// to before. With several steps the results of each are in a directory of their own, and the report is that of the
 /// last.
 fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination) -> Result<()> {
+    let mut begun = Some(begun(session, args, destination));
     let in_full = fits::is_in_full(session)?;
     let deck = session.agree(DeckScenes::load(&args.scene))?;
     let deck = deck.integrated(in_full);
@@ -57,6 +57,9 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned());
     let stem = stem.unwrap_or_default();
+    begun.iter_mut().for_each(|phases| {
+        phases.end();
+    });
     let mut told = deck.notes();
     on_first_rank(session, || destination.print(&lines(&told)))?;
     let mut course = FromDeck {
@@ -68,8 +71,10 @@ fn run_deck(session: &Session, args: &SolveArguments, destination: &Destination)
     let n = deck.n_steps();
     for step in 0..n {
         course.step = step;
-        let mut phases = Phases::new(session, destination.quiet);
-        phases.begin(&reading(&args.scene));
+        // The first step has the seconds of the file.
+        let mut phases = begun
+            .take()
+            .unwrap_or_else(|| self::begun(session, args, destination));
         let title = match n {
             1 => stem.clone(),
             _ => format!("{stem}, step {}", step + 1),
@@ -119,9 +124,11 @@ struct FromDeck<'a> {
     printed: Vec<NodePrint>,
 }
 
-/// The phase in which a file is read.
-fn reading(file: &Path) -> String {
-    format!("reading {}", file.display())
+/// The clock, in the phase in which a file is read.
+fn begun(session: &Session, args: &SolveArguments, destination: &Destination) -> Phases {
+    let mut phases = Phases::new(session, destination.quiet);
+    phases.begin(&format!("reading {}", args.scene.display()));
+    phases
 }
 
 /// Solves a scene and writes its results. The phases so far were those of reading.
@@ -152,7 +159,8 @@ fn solve(
     phases.begin("setting up");
     let solver = FetiFeti::new(session, substructures, Stepper::settings(&scene))?;
     give_back(); // lists of the set-up
-    let setup = phases.end();
+                 // What merging bodies took, beside the set-up that the solver counts, with those between load steps.
+    let merging = phases.end() - solver.facts().setup_seconds;
     let stepper = Stepper::with_solver(scene, solver)?;
     let place = if args.pieces {
         GatherTarget::EachRank
@@ -177,7 +185,7 @@ fn solve(
     let (scene, solver) = (stepper.scene(), stepper.solver());
     report.seconds.read = read;
     report.seconds.assemble = assemble;
-    report.seconds.setup = setup + course.setup_seconds;
+    report.seconds.setup += merging;
     if session.rank() == 0 {
         report.inputs = inputs::of(&args.scene);
     }

@@ -130,9 +130,9 @@ struct KnownCut {
 }
 
 impl KnownCut {
-    fn is_of(&self, mesh: &Arc<CellMesh>, outline: &MeshFingerprint, n: usize) -> bool {
-        let copy = || self.outline.may_be(outline) && congruent(&self.whole, mesh);
-        self.n == n && (Arc::ptr_eq(&self.whole, mesh) || copy())
+    /// Whether another mesh that is to have `n` subdomains is a copy of this one.
+    fn is_of(&self, mesh: &CellMesh, outline: &MeshFingerprint, n: usize) -> bool {
+        self.n == n && self.outline.may_be(outline) && congruent(&self.whole, mesh)
     }
 }
 
@@ -166,28 +166,19 @@ impl Cuts {
         }
     }
 
-    /// Cuts a mesh as the first of its copies was cut.
-    fn cut(&mut self, mesh: &mut Arc<CellMesh>, n: usize) {
+    /// Cuts a mesh as the first of its copies was cut, [ahead](Self::ahead).
+    fn cut(&self, mesh: &mut Arc<CellMesh>, n: usize) {
+        let own = |k: &&KnownCut| k.n == n && Arc::ptr_eq(&k.whole, mesh);
+        if let Some(known) = self.cut.iter().find(own) {
+            *mesh = known.mesh.clone();
+            return;
+        }
         let outline = MeshFingerprint::new(mesh);
         let known = self.cut.iter().find(|k| k.is_of(mesh, &outline, n));
-        match known {
-            Some(known) if Arc::ptr_eq(&known.whole, mesh) => *mesh = known.mesh.clone(),
-            Some(known) => {
-                let mesh = Arc::make_mut(mesh);
-                mesh.parts = known.mesh.parts.clone();
-                mesh.forget_adjacency();
-            }
-            None => {
-                let whole = mesh.clone();
-                cut(Arc::make_mut(mesh), n);
-                self.cut.push(KnownCut {
-                    n,
-                    outline,
-                    whole,
-                    mesh: mesh.clone(),
-                });
-            }
-        }
+        let known = known.expect("a copy of a mesh that has been cut");
+        let mesh = Arc::make_mut(mesh);
+        mesh.parts = known.mesh.parts.clone();
+        mesh.forget_adjacency();
     }
 }
 

@@ -5,10 +5,9 @@
 //! ```
 //!
 //! R has the same rotation or reflection at every node ([`Turn`]). R_Π has it at every vertex, and turns the values of
-//! the averages of the one into those of the other. Subdomains with
-//! different coefficients and turned copies of a part share one factorisation in this way. Every operator that depends
-//! on the stiffness is applied through this type. All multiples have the same [`Gamma`], which `gamma` gives; turned
-//! copies have one of their own, because it has Ψ.
+//! the averages of the one into those of the other. Subdomains with different coefficients and turned copies of a part
+//! share one factorisation in this way. Every operator that depends on the stiffness is applied through this type. All
+//! multiples have the same [`Gamma`], which `gamma` gives; turned copies have one of their own, because it has Ψ.
 //!
 //! Turned copies do not share the blocks Z_cᵀ S Z_c of the coarse-corrected preconditioner, nor operators with adaptive
 //! constraints, which are made of the copy's own matrix.
