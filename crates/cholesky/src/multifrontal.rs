@@ -214,7 +214,8 @@ impl<'a> Elimination<'a> {
         for (l, &p) in front.below.iter().enumerate() {
             place[p as usize] = (width + l) as u32;
         }
-        for j in 0..width {
+        let mut diagonal = vec![0.0; width];
+        for (j, diagonal) in diagonal.iter_mut().enumerate() {
             let dof = sym.interior[front.start + j] as usize;
             let column = panel.col_mut(j);
             let (col, val) = k.row(dof);
@@ -231,14 +232,11 @@ impl<'a> Elimination<'a> {
                 } else if p >= front.start + j {
                     column[p - front.start] += v;
                 }
+                if i as usize == dof {
+                    *diagonal = v;
+                }
             }
         }
-        let diagonal: Vec<f64> = (0..width)
-            .map(|j| {
-                let dof = sym.interior[front.start + j] as usize;
-                k.get(dof, dof)
-            })
-            .collect();
         // The order in which they are added does not depend on who has eliminated them.
         self.children[f].sort_unstable();
         for &c in &self.children[f] {

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
+use super::forms::{self, APPLICATIONS, DENSE_SHARED, FLOP};
 use crate::feti::interface::sharing::DofSharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::preconditioner::coarse_corrected::COARSE_CORRECTED;
@@ -29,7 +29,8 @@ const SHARED_BY: [f64; 2] = [2.7, 5.0];
 /// Seconds per entry of a matrix that is read for one vector.
 const DENSE_BY_ITSELF: f64 = 4e-10;
 
-/// A subdomain with more neighbours than this lies in space.
+/// A subdomain with more neighbours than this lies in space; so does every mesh that is called ragged. A mesh of a thin
+/// part may have fewer.
 const PLANE: f64 = 9.0;
 
 /// Seconds of an application of F and M⁻¹ per interface dof, without the dense operators, in the plane and in space:
@@ -138,7 +139,7 @@ pub fn preconditioner(
     let neighbours: Vec<f64> = (0..problem.local.len()).map(neighbours).collect();
     let seen = total(comm, neighbours.iter().sum());
     let (n, bodies) = (problem.n_subdomains as f64, problem.n_bodies as f64);
-    let space = usize::from(seen / n > PLANE);
+    let space = usize::from(problem.ragged || seen / n > PLANE);
     let mut sum = PreconditionerCost::default();
     let mut primal = 0.0;
     for (j, m) in neighbours.iter().enumerate() {
@@ -150,6 +151,11 @@ pub fn preconditioner(
         let columns = own * (1.0 + NEW_COLUMNS[space] * m);
         let n_gamma = (jump.delta[j].len() + jump.primal[j].len()) as f64;
         sum.setup += FLOP * (n_gamma.powi(2) * columns + n_gamma * columns.powi(2));
+        // M_C reads S as a matrix. Without copies every subdomain has S and T made for itself alone then, where M_D
+        // solves with sparse factors.
+        if problem.ragged && !forms::is_short(n_gamma as usize) {
+            sum.setup += FLOP * n_gamma.powi(3);
+        }
         let stored = DENSE_BY_ITSELF * 2.0 * n_gamma * columns;
         let again = DENSE_SHARED * n_gamma.powi(2) + 0.5 * PER_DOF[space] * n_gamma;
         sum.more += stored.min(again);

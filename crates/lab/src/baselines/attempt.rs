@@ -92,9 +92,10 @@ fn unsolved(outcome: &Outcome) -> String {
     format!("did not converge{place}: {why} in {steps} steps of the loop ({reason})")
 }
 
-/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers
-/// measure another residual; methods that iterate on u meet it at once, or drift from it by rounding. Only one solve is
-/// reported: the one that met the residual, or the one that came closest.
+/// Repeats the solve with a smaller tolerance until the assembled residual is met, and with a larger one where a solve
+/// ends far below it. Methods that iterate on multipliers measure another residual; methods that iterate on u meet it
+/// at once, or drift from it by rounding. Only one solve is reported: the one with the largest tolerance that met the
+/// residual, or the one that came closest.
 ///
 /// Returns the solve, the tolerance of the method's own residual in it, and a message if the target was missed.
 ///
@@ -110,17 +111,34 @@ pub fn solve_to(
     const GAIN: f64 = 0.9;
     // So many solves may gain nothing: a loop of states ends with more than its tolerance, or with less.
     const IDLE: usize = 2;
-    let (mut rtol, mut idle) = (first, 0);
+    // A solve with a residual below this part of the target went too far. So many solves may then take larger
+    // tolerances, below one that has failed.
+    const FAR: f64 = 0.1;
+    const LOOSER: usize = 2;
+    let (mut rtol, mut idle, mut looser) = (first, 0, 0);
+    let mut failed = 1.0;
+    let mut met: Option<(Attempt, f64)> = None;
     let mut best: Option<(Attempt, f64)> = None;
     loop {
         let now = solve(rtol)?;
         if now.converged && now.residual <= target {
-            return Ok((now, rtol, None));
+            let iterates = now.outcome.iterations.is_some_and(|n| n > 0);
+            if !(iterates && now.residual < FAR * target && looser < LOOSER) {
+                return Ok((now, rtol, None));
+            }
+            let next = (rtol * 0.5 * target / now.residual).min((rtol * failed).sqrt());
+            met = Some((now, rtol));
+            (rtol, looser) = (next, looser + 1);
+            continue;
+        }
+        if let Some((met, rtol)) = met {
+            return Ok((met, rtol, None));
         }
         if !now.converged && best.is_none() {
             let message = unsolved(&now.outcome);
             return Ok((now, rtol, Some(message)));
         }
+        failed = rtol;
         // Stuck: further iterations gain nothing, or none are left.
         let stuck = best.as_ref().is_some_and(|(best, _)| {
             let [before, after] = [best, &now].map(|a| a.outcome.iterations);

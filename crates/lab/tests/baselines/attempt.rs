@@ -92,6 +92,36 @@ fn tolerances_shrink_until_the_assembled_residual_is_met() {
     assert_eq!(end.iterations, Some(9));
 }
 
+#[test]
+fn tolerances_grow_where_the_residual_falls_far_below() {
+    let (end, message) = drive(1e-6, 2e-3, 0.0, 0.0);
+    assert_eq!((end.iterations, message), (Some(4), None));
+    assert!(end.residual <= 1e-6);
+    // Two larger tolerances at most, whatever the residual is.
+    let (end, message) = drive(1e-6, 0.0, 1e-20, 0.0);
+    assert_eq!((end.iterations, message), (Some(2), None));
+    // A larger tolerance that misses the target does not count.
+    let (end, message) = with_session(|session| {
+        let mut solves = 0;
+        let (end, rtol, message) = solve_to(1e-6, 1e-6, |_| {
+            solves += 1;
+            Ok(Attempt {
+                u: vec![PetscVec::seq(session, 1)?],
+                residual: [1e-8, 2e-6, 0.0][solves - 1],
+                converged: true,
+                outcome: Outcome {
+                    iterations: Some(10),
+                    ..Outcome::default()
+                },
+            })
+        })
+        .expect("nothing fails");
+        assert_eq!(rtol, 1e-6);
+        (end.residual, message)
+    });
+    assert_eq!((end, message), (1e-8, None));
+}
+
 /// The residual at the end of a loop of states need not be smaller where the tolerance is: one solve in vain is no end.
 #[test]
 fn a_solve_may_gain_nothing_once() {

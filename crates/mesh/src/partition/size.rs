@@ -2,9 +2,9 @@
 
 /// Unknowns of a subdomain in the plane and in space. With fewer, the coarse problem and the interface grow. With more,
 /// factorisations and dense Schur complements become dear: in space their work grows as the square of the unknowns.
-/// Measured with `bench`: the case `plate` takes 34 iterations with 1250 and with 2500 unknowns, 46 with 5000, 56 with
-/// 10,000; a finer `rod-4` takes 22 s of processor time with 500 and with 1000, 27 s with 1500, 29 s with 2500.
-const UNKNOWNS: [usize; 2] = [2500, 1000];
+/// In space 1400 to 3000 are equally good for large meshes, and 2000 are better than 1000 for small ones; in the plane
+/// 2500 are better than 5000 (docs/meshes.md, "Subdomains").
+const UNKNOWNS: [usize; 2] = [2500, 2000];
 
 /// The number of subdomains for a body of so many unknowns, at least one.
 ///
