@@ -35,6 +35,9 @@ def variants(report):
         if (pc, primal, averages) == (report["preconditioner"], "vertices,edges", "components"):
             continue
         options = ["-fetifeti_pc_type", pc, "-fetifeti_primal", primal, "-fetifeti_averages", averages]
+        if pc == "coarse_corrected":
+            # As the default has it.
+            options += ["-fetifeti_lifting", "vertices"]
         yield f"{pc}, {primal}, {averages}", options
 
 
