@@ -275,8 +275,12 @@ fn judge(ids: impl Iterator<Item = u64>) {
              and iterations over those without friction, median, 9 of 10, most: {quantiles:.2?}"
         );
         assert!(wrong.is_empty(), "{wrong:?}");
-        // Where four bodies meet in space, states may wander: that is said, and no answer is wrong.
-        assert!(20 * failures.len() <= 3 * n && right > n / 2);
+        // Where four bodies meet in space, states may wander (22 of the 500): that is said, and no answer is wrong. A
+        // sample of ten may hold three of them.
+        assert!(
+            failures.len() <= 4 + n / 20 && right > n / 2,
+            "{failures:?}"
+        );
     });
 }
 
