@@ -8,6 +8,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use fetifeti_scene::elements::cell::{self, Cure, Element, Material, Plane};
+use fetifeti_scene::elements::law::Law;
 
 /// A block of cells: corner points of its map, cells per direction.
 struct Block {
@@ -120,8 +121,10 @@ impl Block {
 
 fn elastic(poisson: f64, cure: Cure) -> Material {
     Material::Elastic {
-        young: 1.0,
-        poisson,
+        law: Law::Isotropic {
+            young: 1.0,
+            poisson,
+        },
         plane: Plane::Strain,
         cure,
     }

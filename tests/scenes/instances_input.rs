@@ -156,7 +156,8 @@ fn mistakes_have_a_sentence_each() {
     );
     check(
         &bricks("[[0, 0]]", "[[body.only]]\nsize = 2\n"),
-        "s.toml:8: unknown key `size` in [[body.only]] (known keys are instances, x, y, young, poisson, load, ramp, \
+        "s.toml:8: unknown key `size` in [[body.only]] (known keys are instances, x, y, young, poisson, material, \
+         expansion, temperature, reference, load, ramp, \
          traction, pressure, spring, dirichlet)",
     );
     check(

@@ -116,7 +116,7 @@ fn meshes_follow_given_values() {
             let factor = scene.prescribed_factor(step);
             assert_eq!(factor, [0.75, 0.5, 0.0][step]);
             let expected = scaled(1.0, 1.0, factor).subdomain_mesh(index).unwrap();
-            let mesh = mesh.at(factor);
+            let mesh = mesh.at(&scene, step);
             assert_eq!(mesh.dof, expected.dof);
             for (found, wanted) in mesh.prescribed.iter().zip(&expected.prescribed) {
                 assert!((found - wanted).abs() < 1e-15, "{found} {wanted}");

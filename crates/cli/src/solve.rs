@@ -201,7 +201,7 @@ fn solve(
     if !scene.probes.is_empty() || asked.is_some() {
         let values = NodalValues::displacements(session, scene, solver, solution, course.step)?;
         let found = match session.rank() {
-            0 => values.probes(scene),
+            0 => values.probes(scene, course.step),
             _ => Ok(Vec::new()),
         };
         report.probes = session.agree(found)?;

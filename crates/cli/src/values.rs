@@ -11,6 +11,7 @@ use fetifeti::{FetiFeti, Solution};
 use parallel::exchange::exchange;
 use petsc::Session;
 use report::json::probes::ProbeValue;
+use scene::assembly::recovery;
 use scene::assembly::{internal_force, SubdomainMesh};
 use scene::{Scene, SteppedMesh};
 
@@ -80,11 +81,10 @@ impl NodalValues {
         of: &dyn Fn(&SubdomainMesh, Vec<f64>) -> Vec<f64>,
         put: &dyn Fn(&mut f64, f64),
     ) -> Result<NodalValues> {
-        let scale = scene.prescribed_factor(step);
         let local = solver.problem().local.iter().map(|sub| sub.index);
         let nodal = local.clone().zip(&solution.u).map(|(index, u)| {
             let mut part = SteppedMesh::new(scene, index)?;
-            let mesh = part.at(scale);
+            let mesh = part.at(scene, step);
             Ok(of(mesh, mesh.nodal(u)))
         });
         let nodal: Vec<Vec<f64>> = session.agree(nodal.collect::<Result<_>>())?;
@@ -122,19 +122,19 @@ impl NodalValues {
         out
     }
 
-    /// u, and in elasticity the stress, at the probes of a scene. On rank 0.
+    /// u, and in elasticity the stress, at the probes of a scene in this load step. On rank 0.
     ///
     /// # Errors
     /// [`ErrorKind::Input`](base::ErrorKind::Input) for a probe that lies in no body.
-    pub fn probes(&self, scene: &Scene) -> Result<Vec<ProbeValue>> {
+    pub fn probes(&self, scene: &Scene, step: usize) -> Result<Vec<ProbeValue>> {
         scene
             .probes
             .iter()
-            .map(|probe| self.probe(scene, probe))
+            .map(|probe| self.probe(scene, probe, step))
             .collect()
     }
 
-    fn probe(&self, scene: &Scene, probe: &scene::ProbeSpec) -> Result<ProbeValue> {
+    fn probe(&self, scene: &Scene, probe: &scene::ProbeSpec, step: usize) -> Result<ProbeValue> {
         let c = self.components;
         for (b, body) in scene.bodies.iter().enumerate() {
             if probe
@@ -153,7 +153,8 @@ impl NodalValues {
                 continue;
             }
             for inside in 0..body.mesh().n_subdomains() {
-                let mesh = scene.subdomain_mesh(body.first_subdomain + inside)?;
+                let mut part = SteppedMesh::new(scene, body.first_subdomain + inside)?;
+                let mesh = part.at(scene, step);
                 let nodes = body.mesh().subdomain_nodes(inside);
                 for (e, (kind, cell)) in mesh.cells().iter().enumerate() {
                     let points: Vec<[f64; 3]> =
@@ -170,10 +171,7 @@ impl NodalValues {
                     let stress = scene.form.is_elastic().then(|| {
                         let nodal: Vec<f64> = values.iter().flat_map(|v| v[..c].to_vec()).collect();
                         let mut at = vec![element::NodeStress::default(); points.len()];
-                        let (material, rule) = (mesh.material(e), mesh.integration(e));
-                        element::stress_at_nodes(
-                            kind, mesh.dim, &points, &material, rule, &nodal, &mut at,
-                        );
+                        recovery::at_nodes(mesh, (e, kind, cell), &nodal, &mut at);
                         let sum =
                             |k: usize| weights.iter().zip(&at).map(|(w, s)| w * s.stress[k]).sum();
                         (0..6).map(sum).collect::<Vec<f64>>()

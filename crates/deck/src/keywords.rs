@@ -39,7 +39,7 @@ const SLENDER: KeywordTreatment = Refused("beams, shells, membranes and trusses 
 const DISCRETE: KeywordTreatment = Refused("springs, dashpots and point masses are not supported");
 const COUPLED: KeywordTreatment =
     Refused("rigid and averaged couplings of nodes are not supported; write them as *EQUATION");
-const NONLINEAR: KeywordTreatment = InMaterial("only isotropic linear elasticity is supported");
+const NONLINEAR: KeywordTreatment = InMaterial("only linear elasticity is supported");
 const CHANGES: KeywordTreatment = Refused("the model may not change between steps");
 const GENERATED: KeywordTreatment =
     RefusedMesh("nodes and elements must be written out; generating them is not supported");
@@ -148,10 +148,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("ENERGY OUTPUT", OUTPUT),
     ("EQUATION", Read),
     ("EQUATIONF", FLUID),
-    (
-        "EXPANSION",
-        Ignored("temperatures do not change: *TEMPERATURE would be refused"),
-    ),
+    ("EXPANSION", Read),
     ("FACE PRINT", OUTPUT),
     ("FEASIBLE DIRECTION", DESIGN),
     ("FILM", HEAT),
@@ -235,10 +232,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("NORMAL", Ignored("normals are for beams and shells")),
     ("NSET", Read),
     ("OBJECTIVE", DESIGN),
-    (
-        "ORIENTATION",
-        Ignored("isotropic materials have no directions"),
-    ),
+    ("ORIENTATION", Read),
     ("OUTPUT", OUTPUT),
     (
         "PARAMETER",
@@ -303,10 +297,7 @@ pub const KEYWORDS: &[(&str, KeywordTreatment)] = &[
     ("SURFACE INTERACTION", Read),
     ("SURFACE SECTION", SLENDER),
     ("SYSTEM", Read),
-    (
-        "TEMPERATURE",
-        Refused("strains of temperature are not supported"),
-    ),
+    ("TEMPERATURE", Read),
     ("TIE", Read),
     (
         "TIME POINTS",

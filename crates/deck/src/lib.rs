@@ -25,7 +25,7 @@ pub use joint::{
     Adjust, ContactKind, ContactPair, Friction, Interaction, Overclosure, SurfaceName, Tie,
 };
 pub use keywords::{KeywordTreatment, KEYWORDS};
-pub use model::{Deck, DeckEquation, DeckMaterial, Section, Term, Transform};
+pub use model::{Deck, DeckEquation, DeckMaterial, Orientation, Section, Term, Transform};
 pub use step::{
     BodyLoad, BodyLoadKind, DeckStep, FieldRequest, NodeForce, NodePrint, Pressure, Printed,
     Support, Totals,

@@ -6,6 +6,7 @@ use super::gap::Gap;
 use super::joint::{ContactPair, Interaction, Tie};
 use super::step::DeckStep;
 use base::linalg::vec3::{cross, dot, minus, norm};
+use elements::law::Law;
 use mesh::clockwise::side_backwards;
 use mesh::MeshFile;
 
@@ -38,6 +39,10 @@ pub struct Deck {
     pub contacts: Vec<ContactPair>,
     /// The gap elements, by their *GAP.
     pub gaps: Vec<Gap>,
+    /// Temperatures at the beginning, by increasing node; 0 elsewhere.
+    pub initial_temperatures: Vec<(u32, f64)>,
+    /// The axes of materials.
+    pub orientations: Vec<Orientation>,
     /// The surface interactions, and the laws of the gap elements.
     pub interactions: Vec<Interaction>,
     /// The steps, each with everything that holds at its end.
@@ -59,6 +64,8 @@ pub struct Section {
     pub material: u32,
     /// The thickness of plane elements, 1 if none is given.
     pub thickness: f64,
+    /// The axes of its material, as a place in [`Deck::orientations`]; `None`: those of the coordinates.
+    pub orientation: Option<u32>,
     /// Where it stands.
     pub place: DeckLine,
 }
@@ -68,10 +75,12 @@ pub struct Section {
 pub struct DeckMaterial {
     /// Its name, in capitals.
     pub name: String,
-    /// Young's modulus and Poisson's ratio. Materials of cells have them.
-    pub elastic: Option<(f64, f64)>,
+    /// The law, along the axes of its section. Materials of cells have one.
+    pub elastic: Option<Law>,
     /// The mass per volume.
     pub density: Option<f64>,
+    /// The strain per degree along the axes of its section.
+    pub expansion: Option<[f64; 3]>,
     /// Where it stands.
     pub place: DeckLine,
     /// Why no cell may have it.
@@ -89,6 +98,17 @@ pub struct Transform {
     pub b: [f64; 3],
     /// Where it stands.
     pub place: DeckLine,
+}
+
+/// An *ORIENTATION: the axes along which the constants of materials count.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orientation {
+    /// Its name, in capitals.
+    pub name: String,
+    /// The axes before they are turned.
+    pub axes: Transform,
+    /// The axis about which they are turned, 0 to 2, and by how many degrees.
+    pub turn: Option<(usize, f64)>,
 }
 
 /// A linear equation between displacements, with right-hand side 0.

@@ -20,6 +20,8 @@ pub struct DeckStep {
     pub pressures: Vec<Pressure>,
     /// Forces on cells.
     pub body_loads: Vec<BodyLoad>,
+    /// Temperatures that are given, by increasing node; those of the beginning elsewhere.
+    pub temperatures: Vec<(u32, f64)>,
     /// The friction of each interaction; `None`: none.
     pub friction: Vec<Option<Friction>>,
     /// The tables that are to be printed.

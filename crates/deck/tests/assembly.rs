@@ -140,17 +140,16 @@ fn equations_and_systems_are_those_of_each_instance() {
 /// A part without an instance is said to be left out; what it has is not told twice of one with two.
 #[test]
 fn what_is_left_out_is_told() {
-    let other = PART.replace("NAME=P", "NAME=Q").replace(
-        "*EQUATION",
-        "*ORIENTATION, NAME=O\n1, 0, 0, 0, 1, 0\n*EQUATION",
-    );
+    let other = PART
+        .replace("NAME=P", "NAME=Q")
+        .replace("*EQUATION", "*NORMAL\n1, 1, 0, 0, 1\n*EQUATION");
     let text = ASSEMBLY.replace("PART=P", "PART=Q");
     let deck = deck(&format!("{PART}{other}{text}{REST}")).expect("a deck");
     assert!(deck
         .placed
         .iter()
         .any(|n| n.reason == "part P has no instance: it is left out"));
-    let told = deck.ignored.iter().filter(|n| n.keyword == "*ORIENTATION");
+    let told = deck.ignored.iter().filter(|n| n.keyword == "*NORMAL");
     assert_eq!(told.count(), 1);
     // Every part is there once where nothing is assembled.
     let mesh = mesh(&format!("{PART}{other}"));

@@ -1,6 +1,7 @@
 use super::*;
 use base::Error;
 use elements::kind::CellKind;
+use elements::law::Law;
 use mesh::{Members, MeshGroup};
 
 fn read_text(text: &str) -> Result<Deck> {
@@ -29,7 +30,11 @@ fn a_deck_is_read_with_its_names_resolved() {
         (deck.sections[0].material, deck.sections[0].thickness),
         (0, 1.0)
     );
-    assert_eq!(deck.materials[0].elastic, Some((1e4, 0.3)));
+    let steel = Law::Isotropic {
+        young: 1e4,
+        poisson: 0.3,
+    };
+    assert_eq!(deck.materials[0].elastic, Some(steel));
     assert_eq!(deck.node_transform, [(5, 0), (6, 0)]);
     let s = 0.5_f64.sqrt();
     let frame = deck.frame(6).expect("a system");

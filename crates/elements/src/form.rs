@@ -1,6 +1,7 @@
 //! The equation of a scene and its finite elements.
 
 use super::cell::{rigid_count, Cure, Element, Material, Plane};
+use super::law::Law;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -46,17 +47,26 @@ impl Form {
         }
     }
 
-    /// The material with coefficient ρ, or Young's modulus and Poisson's ratio.
+    /// The material with coefficient ρ, or the isotropic law of Young's modulus and Poisson's ratio.
     pub fn material(&self, rho: f64, poisson: f64) -> Material {
         match self.physics {
             Physics::Scalar => Material::Scalar { rho },
-            Physics::Elasticity { plane, cure } => Material::Elastic {
+            Physics::Elasticity { .. } => self.elastic(Law::Isotropic {
                 young: rho,
                 poisson,
-                plane,
-                cure,
-            },
+            }),
         }
+    }
+
+    /// The material of an elastic law.
+    ///
+    /// # Panics
+    /// For a scalar problem.
+    pub fn elastic(&self, law: Law) -> Material {
+        let Physics::Elasticity { plane, cure } = self.physics else {
+            panic!("a scalar problem has no elastic law");
+        };
+        Material::Elastic { law, plane, cure }
     }
 
     /// Whether bodies are rings around the axis x = 0: x is the radius, y runs along the axis.

@@ -66,7 +66,7 @@ pub(super) fn by_element(
 }
 
 /// A point in the middle of every element.
-fn middles(mesh: &SubdomainMesh) -> Box<dyn Iterator<Item = [f64; 3]> + '_> {
+pub(super) fn middles(mesh: &SubdomainMesh) -> Box<dyn Iterator<Item = [f64; 3]> + '_> {
     match &mesh.elements {
         SubdomainElements::Grid(grid) => {
             Box::new(grid.element_places().map(|p| middle(mesh, grid, p)))

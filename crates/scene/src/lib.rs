@@ -24,6 +24,7 @@ mod cut;
 pub(crate) mod deck;
 mod displaced;
 pub mod distribution;
+mod element_laws;
 mod equilibrium;
 pub mod fits;
 pub(crate) mod geometry;
@@ -72,9 +73,11 @@ pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};
 pub use model::grid::GridSpec;
+pub use model::heat::{HeatSpec, Temperature};
 pub use model::joints::{
     AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, PairSelector, TieSpec,
 };
+pub use model::law::{LawSpec, MaterialAxes, OrientedLaw};
 pub use model::map::{BodyShape, Map, Round};
 pub use model::motion::Isometry;
 pub use model::profile::{Limit, Limits, Profile};

@@ -49,10 +49,19 @@ impl SteppedMesh {
         &self.mesh
     }
 
-    /// The mesh where the factor of given values is `scale` ([`Scene::prescribed_factor`]).
-    pub fn at(&mut self, scale: f64) -> &SubdomainMesh {
+    /// The mesh with the given values and temperatures of a load step of its scene.
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub fn at(&mut self, scene: &Scene, step: usize) -> &SubdomainMesh {
+        let factors = Factors::of(&scene.steps, step).expect("the step exists");
+        let scale = factors.dirichlet();
         for (now, given) in self.mesh.prescribed.iter_mut().zip(&self.given) {
             *now = given * scale;
+        }
+        if let Some(heat) = &mut self.mesh.heat {
+            let (body, _) = scene.place(self.mesh.index);
+            heat.factor = factors.load(body.spec.ramp.as_ref());
         }
         &self.mesh
     }
@@ -83,9 +92,8 @@ impl Stepping {
     /// have.
     pub fn loads(&mut self, scene: &Scene, step: usize) -> Result<Vec<Vec<f64>>> {
         let factors = Factors::of(&scene.steps, step)?;
-        let scale = factors.dirichlet();
         let load = |s: &mut Stepped| {
-            let mesh = s.mesh.at(scale);
+            let mesh = s.mesh.at(scene, step);
             let load = scene.nodal_load(mesh, factors)?;
             Ok(assembly::free_load(mesh, &s.columns, &load))
         };
@@ -269,6 +277,7 @@ impl Scene {
         if let Some((value, point)) = bad {
             LOAD.at(&body.spec, value, point)?;
         }
+        assembly::add_thermal_load(mesh, &mut out);
         Ok(out)
     }
 }

@@ -48,6 +48,7 @@ impl MatrixCache {
         }
         let mesh = SubdomainMesh {
             prescribed: Vec::new(),
+            heat: None,
             ..mesh.into_owned()
         };
         let k_too = k.clone();
@@ -99,6 +100,10 @@ fn hash(mesh: &SubdomainMesh) -> u64 {
     for point in places(mesh) {
         numbers(point, &mut state);
     }
+    mesh.laws.of.hash(&mut state);
+    for tangent in &mesh.laws.tangents {
+        numbers(tangent.0.as_flattened(), &mut state);
+    }
     for coefficients in [&mesh.rho, &mesh.poisson, &mesh.spring] {
         numbers(coefficients, &mut state);
     }
@@ -113,6 +118,7 @@ fn is_alike(a: &SubdomainMesh, b: &SubdomainMesh) -> bool {
         && places(a) == places(b)
         && a.rho == b.rho
         && a.poisson == b.poisson
+        && a.laws == b.laws
         && a.spring == b.spring
         && a.integration == b.integration
 }

@@ -3,10 +3,11 @@
 use super::body::Body;
 use super::checked::Scene;
 use super::coefficient::{by_element, evaluate};
+use super::element_laws::{heat_by_element, laws_by_element};
 use super::model::field::Field;
 use super::model::steps::Factors;
 use super::quantity::{Quantity, RATIO, SPRING};
-use crate::assembly::{self, Grid, SidePart, SubdomainElements, SubdomainMesh};
+use crate::assembly::{self, ElementLaws, Grid, SidePart, SubdomainElements, SubdomainMesh};
 use base::Result;
 use elements::element::Integration;
 use mesh::{Cells, Mesh};
@@ -38,6 +39,8 @@ impl Scene {
             prescribed: vec![0.0; c * n],
             rho: Vec::new(),
             poisson: Vec::new(),
+            laws: ElementLaws::default(),
+            heat: None,
             integration: integration(body, inside),
             spring: Vec::new(),
         };
@@ -65,6 +68,14 @@ impl Scene {
             mesh.poisson = by_element(body, inside, &mesh, &body.spec.poisson, |value, point| {
                 RATIO.at(&body.spec, value, point)
             })?;
+        }
+        if let Some(law) = &body.spec.law {
+            mesh.laws = laws_by_element(body, inside, &mesh, law);
+        }
+        if let Some(heat) = &body.spec.heat {
+            let mut heat = heat_by_element(body, inside, &mesh, heat)?;
+            heat.factor = factors.load(body.spec.ramp.as_ref());
+            mesh.heat = Some(heat);
         }
         for (side, stiffness) in &body.spec.springs {
             if whole.reaches(inside, *side) {

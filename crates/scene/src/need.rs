@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use super::model::body::{BodySpec, Cut};
 use super::model::field::Field;
+use super::model::law::LawSpec;
 use elements::form::Form;
 use mesh::partition::subdomains_for;
 use mesh::Mesh;
@@ -57,13 +58,13 @@ struct CongruentMemory {
     /// Bytes of one, how many differ, how many subdomains share them.
     groups: Vec<[f64; 3]>,
     /// The group of each key.
-    known: HashMap<[u64; 13], usize>,
+    known: HashMap<[u64; 14], usize>,
 }
 
 impl CongruentMemory {
     /// Adds a body's subdomains, of which `kinds` differ, to the group of those with the same key. Without a key all
     /// differ.
-    fn add(&mut self, key: Option<[u64; 13]>, bytes: f64, kinds: f64, subdomains: f64) {
+    fn add(&mut self, key: Option<[u64; 14]>, bytes: f64, kinds: f64, subdomains: f64) {
         let kinds = if key.is_some() { kinds } else { subdomains };
         let next = self.groups.len();
         let at = key.map_or(next, |key| *self.known.entry(key).or_insert(next));
@@ -237,16 +238,18 @@ impl BodyCounts {
 
 /// A key that is equal for boxes whose subdomains have the same factors, up to multiples and turns, and for copies of
 /// one mesh; `None` where all subdomains differ.
-fn key(body: &BodySpec) -> Option<[u64; 13]> {
+fn key(body: &BodySpec) -> Option<[u64; 14]> {
     let steady = |field: &Field| match field {
         Field::Expression(e) => !e.varies_in_space(),
         Field::Checkerboard { .. } | Field::Table { .. } => true,
         _ => false,
     };
-    if body.map.is_some() || !steady(&body.rho) || !steady(&body.poisson) {
+    let fixed = |law: &LawSpec| law.laws.iter().all(|law| law.axes.is_fixed());
+    let steady_law = body.law.as_ref().is_none_or(fixed);
+    if body.map.is_some() || !steady(&body.rho) || !steady(&body.poisson) || !steady_law {
         return None;
     }
-    let mut out = [0; 13];
+    let mut out = [0; 14];
     let first = match &body.mesh {
         Mesh::Grid(grid) => {
             let [a, b, c] = grid.block_elements().map(|n| n as u64);
@@ -261,11 +264,12 @@ fn key(body: &BodySpec) -> Option<[u64; 13]> {
         }
     };
     out[..7].copy_from_slice(&first);
+    out[13] = body.law.as_ref().map_or(0, LawSpec::key);
     Some(out)
 }
 
 /// A key that is equal for bodies whose subdomains have the same matrices: it has coefficients and directions, too.
-fn exact_key(body: &BodySpec) -> Option<[u64; 13]> {
+fn exact_key(body: &BodySpec) -> Option<[u64; 14]> {
     let number = |field: &Field| match field {
         Field::Expression(e) => e.as_constant().map(f64::to_bits),
         _ => None,
@@ -275,7 +279,7 @@ fn exact_key(body: &BodySpec) -> Option<[u64; 13]> {
     if let Some(motion) = &body.motion {
         // A row of R and an entry of another one tell turns apart.
         let [[x, y, z], [w, ..], _] = motion.turn.map(|row| row.map(f64::to_bits));
-        out[9..].copy_from_slice(&[x, y, z, w]);
+        out[9..13].copy_from_slice(&[x, y, z, w]);
     }
     Some(out)
 }

@@ -3,11 +3,14 @@
 use super::body::Body;
 use super::model::body::{BodySpec, Force};
 use super::model::field::{At, Field};
+use super::model::heat::Temperature;
+use super::model::law::OrientedLaw;
 use super::model::spec::SceneSpec;
 use super::quantity::{Quantity, LARGEST, LOAD, LONGEST, RATIO};
 use base::{Error, Result};
-use elements::cell::jacobian_is_positive;
+use elements::cell::{jacobian_is_positive, Element};
 use elements::form::Form;
+use elements::law::Law;
 use mesh::{places, BoxMesh, Mesh};
 use std::collections::HashMap;
 
@@ -143,11 +146,35 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
     Ok(())
 }
 
+/// Whether a law fits the equation; the clause if it does not.
+fn check_law(law: &OrientedLaw, dim: usize, form: &Form) -> std::result::Result<(), String> {
+    Law::General(law.tangent).check()?;
+    let placed = law.at([1.0, 0.0, 0.0], None);
+    if dim == 2 && !placed.keeps_the_plane() {
+        let found = "a strain in the plane leads to shear across it";
+        return Err(format!(
+            "{found}, expected a law that is symmetric about the plane"
+        ));
+    }
+    match form.is_axial() {
+        true => Ok(()),
+        false => form.elastic(Law::General(placed)).check(dim, form.element),
+    }
+}
+
 /// Checks values that do not depend on the point.
 fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
+    for law in body.law.iter().flat_map(|law| &law.laws) {
+        if let Err(clause) = check_law(law, body.mesh.dim(), form) {
+            return body.error(format!("the law of its material: {clause}"));
+        }
+    }
     Quantity::coefficient(form).check(body, &body.rho)?;
     if form.is_elastic() {
         RATIO.check(body, &body.poisson)?;
+    }
+    if body.heat.is_some() && form.element == Element::P1 && body.mesh.grid().is_some() {
+        return body.error("`expansion` with `element = \"p1\"` (\"q1\" was expected)");
     }
     let components = form.components(body.mesh.dim());
     let count = |n: usize, what: &str| {
@@ -164,6 +191,9 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
         count(body.load.fields.len(), "a load")?;
     }
     let mut fields: Vec<&Field> = body.load.fields.iter().collect();
+    if let Some(Temperature::Field(field)) = body.heat.as_ref().map(|heat| &heat.temperature) {
+        fields.push(field);
+    }
     for load in &body.surface {
         match &load.force {
             Force::Traction(list) => {

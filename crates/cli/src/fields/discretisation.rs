@@ -91,10 +91,9 @@ impl Estimator {
         u: &[Vec<f64>],
         step: usize,
     ) -> Vec<BodyError> {
-        let scale = scene.prescribed_factor(step);
         let mut sums = vec![NodalStressSum::default(); self.nodes.len()];
         for ((part, places), u) in self.parts.iter_mut().zip(&self.places).zip(u) {
-            let mesh = part.at(scale);
+            let mesh = part.at(scene, step);
             let mut places = places.iter();
             for_each_cell(mesh, &mesh.nodal(u), |_, volume, at| {
                 for (node, &p) in at.iter().zip(&mut places) {

@@ -7,13 +7,13 @@ use bytemuck::{Pod, Zeroable};
 use parallel::exchange::gather_all;
 use petsc::Session;
 use scene::assembly::SubdomainMesh;
-use scene::{Scene, SteppedMesh};
+use scene::{LawSpec, Scene, SteppedMesh};
 
 /// A body of more materials than this has one point per node.
 const MOST: usize = 16;
 
-/// ρ, or Young's modulus, and Poisson's ratio, as bits.
-type MaterialKey = [u64; 2];
+/// ρ, or Young's modulus, and Poisson's ratio, as bits, and the number of a law that is not isotropic.
+type MaterialKey = [u64; 3];
 
 /// A material of a body.
 #[repr(C)]
@@ -102,5 +102,7 @@ impl OfBody {
 
 fn key(mesh: &SubdomainMesh, e: usize) -> MaterialKey {
     let poisson = mesh.poisson.get(e).copied().unwrap_or(0.0);
-    [mesh.rho[e], poisson].map(f64::to_bits)
+    let [first, second] = [mesh.rho[e], poisson].map(f64::to_bits);
+    let law = mesh.laws.of.get(e).map_or(LawSpec::ISOTROPIC, |of| of[0]);
+    [first, second, law.into()]
 }

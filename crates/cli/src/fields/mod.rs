@@ -148,7 +148,6 @@ impl Gathered {
         };
         solved.sort_unstable_by_key(|part| part.0);
         let c = scene.components();
-        let scale = scene.prescribed_factor(step);
         let elastic = scene.form.is_elastic();
         self.u.clear();
         self.u.resize(c * self.points.len(), 0.0);
@@ -157,7 +156,7 @@ impl Gathered {
         let mut sums = vec![NodalStressSum::default(); if elastic { self.points.len() } else { 0 }];
         let mut first = 0;
         for (part, (_, rank, u)) in self.parts.iter_mut().zip(solved) {
-            let mesh = part.at(scale);
+            let mesh = part.at(scene, step);
             let nodal = mesh.nodal(&u);
             let cells = mesh.cells();
             for (e, (_, local)) in cells.iter().enumerate() {

@@ -14,7 +14,7 @@ use base::Result;
 use mesh::Digits;
 
 /// Keywords that every instance of a part has of its own. Others are told once, where they stand in the part.
-const OF_INSTANCES: [&str; 13] = [
+const OF_INSTANCES: [&str; 14] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -24,6 +24,7 @@ const OF_INSTANCES: [&str; 13] = [
     "EQUATION",
     "MPC",
     "TRANSFORM",
+    "ORIENTATION",
     "TIE",
     "BOUNDARY",
     "CLOAD",
@@ -237,7 +238,9 @@ impl<'a> Flat<'a> {
                 _ => first(row, Of::Cells),
             },
             "DLOAD" => first(row, Of::Cells),
-            "BOUNDARY" | "CLOAD" | "DSLOAD" => first(row, Of::Nodes),
+            "BOUNDARY" | "CLOAD" | "DSLOAD" | "TEMPERATURE" | "INITIALCONDITIONS" => {
+                first(row, Of::Nodes)
+            }
             "TIE" | "CONTACTPAIR" => each(row, &|_, f| target(f, Of::Nodes)),
             "EQUATION" if row.fields.len() > 1 => each(row, &|k, f| match k % 3 {
                 0 => target(f, Of::Nodes),
@@ -247,14 +250,15 @@ impl<'a> Flat<'a> {
                 0 => f.to_string(),
                 _ => target(f, Of::Nodes),
             }),
-            "TRANSFORM" if !placement.is_none() => turned(card, row, placement),
+            "TRANSFORM" | "ORIENTATION" if !placement.is_none() => turned(card, row, placement),
             _ => None,
         });
         let name = |p: &Param| -> Option<Param> {
             let of_surface = card.keyword == "SURFACE" && p.name == "NAME";
             let value = match p.name.as_str() {
                 "NSET" | "ELSET" => own.name(&names, &p.value),
-                "NAME" if of_surface => own.name(&names, &p.value),
+                "NAME" if of_surface || card.keyword == "ORIENTATION" => own.name(&names, &p.value),
+                "ORIENTATION" => own.name(&names, &p.value),
                 "ADJUST" | "MASTER" | "SLAVE" if real(&p.value).is_none() => {
                     own.target(&names, &p.value, Of::Nodes)
                 }

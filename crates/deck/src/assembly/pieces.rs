@@ -97,7 +97,7 @@ pub(super) fn coordinates(row: &DataLine) -> Option<[f64; 3]> {
     Some(out)
 }
 
-/// The two points of a *TRANSFORM of a part that is placed.
+/// The two points of a *TRANSFORM or an *ORIENTATION of a part that is placed.
 pub(super) fn turned(
     card: &Card,
     row: &DataLine,
@@ -105,7 +105,8 @@ pub(super) fn turned(
 ) -> Option<Vec<String>> {
     let numbers: Option<Vec<f64>> = row.fields.iter().map(|f| real(f)).collect();
     let numbers = numbers.filter(|n| n.len() == 6)?;
-    let cylindrical = value(card, "TYPE") == Some("C");
+    let cylindrical =
+        value(card, "TYPE") == Some("C") || value(card, "SYSTEM") == Some("CYLINDRICAL");
     let points = numbers.chunks(3).map(|x| [x[0], x[1], x[2]]);
     let placed = points.flat_map(|x| {
         if cylindrical {

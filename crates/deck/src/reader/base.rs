@@ -39,6 +39,7 @@ pub(crate) struct DeckReader<'a> {
     pub(super) amplitudes: Vec<Amplitude>,
     pub(super) amplitude_names: HashMap<String, usize>,
     pub(super) materials: HashMap<String, u32>,
+    pub(super) orientations: HashMap<String, u32>,
     pub(super) interactions: HashMap<String, u32>,
     pub(super) gaps: Gaps,
     /// The contact pairs that say that nodes meet surfaces, by their lines.
@@ -66,6 +67,7 @@ impl<'a> DeckReader<'a> {
             amplitudes: Vec::new(),
             amplitude_names: HashMap::new(),
             materials: HashMap::new(),
+            orientations: HashMap::new(),
             interactions: HashMap::new(),
             gaps: Gaps::default(),
             by_nodes: Vec::new(),

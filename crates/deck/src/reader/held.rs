@@ -59,6 +59,7 @@ pub(super) struct SeenCards {
     pub boundary: bool,
     pub cload: bool,
     pub dload: bool,
+    pub temperature: bool,
     pub print: bool,
     pub node_fields: bool,
     pub cell_fields: bool,
@@ -80,6 +81,7 @@ pub(super) struct DeckState {
     pub forces: BTreeMap<(u32, u8), HeldValue>,
     pub pressures: BTreeMap<(u32, u8), HeldValue>,
     pub bodies: Vec<HeldCellLoad>,
+    pub temperatures: BTreeMap<u32, HeldValue>,
     pub prints: Vec<NodePrint>,
     pub fields: Vec<FieldRequest>,
     /// By interaction.

@@ -151,7 +151,7 @@ impl<'a> DeckReader<'a> {
     fn first_young(&self, card: &Card) -> Result<f64> {
         let elastic = self.deck.materials.first().and_then(|m| m.elastic);
         match elastic {
-            Some((young, _)) => Ok(young),
+            Some(law) => Ok(law.young()),
             None => self.error(
                 card,
                 "its slope is missing, and so is *ELASTIC of the first material, from which CalculiX takes it",

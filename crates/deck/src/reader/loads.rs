@@ -60,7 +60,7 @@ impl<'a> DeckReader<'a> {
     }
 
     /// The amplitude that a card of loads names, and how it is delayed.
-    fn timed(&self, params: &mut Params<'a>) -> Result<Option<Timed>> {
+    pub(super) fn timed(&self, params: &mut Params<'a>) -> Result<Option<Timed>> {
         let delay = params.real("TIMEDELAY")?;
         let Some(name) = params.name("AMPLITUDE")? else {
             return match delay {
@@ -78,7 +78,7 @@ impl<'a> DeckReader<'a> {
     }
 
     /// Whether loads of earlier steps are removed.
-    fn anew(&self, params: &mut Params<'a>) -> Result<bool> {
+    pub(super) fn anew(&self, params: &mut Params<'a>) -> Result<bool> {
         match params.value("OP") {
             None | Some("MOD") => Ok(false),
             Some("NEW") => Ok(true),

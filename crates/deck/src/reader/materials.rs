@@ -1,4 +1,4 @@
-//! *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION, *INITIAL CONDITIONS.
+//! *MATERIAL with its *DENSITY, *SOLID SECTION, *INITIAL CONDITIONS.
 
 use super::base::DeckReader;
 use super::gaps;
@@ -29,6 +29,10 @@ impl<'a> DeckReader<'a> {
                     }
                     self.current(card, current)?.density = Some(density);
                 }
+                ("EXPANSION", _) => {
+                    let expansion = self.expansion(card)?;
+                    self.current(card, current)?.expansion = Some(expansion);
+                }
                 (_, Some((_, KeywordTreatment::InMaterial(reason)))) => {
                     let note = Self::note(card, card.place, reason);
                     let material = self.current(card, current)?;
@@ -55,6 +59,7 @@ impl<'a> DeckReader<'a> {
             name: name.to_string(),
             elastic: None,
             density: None,
+            expansion: None,
             place: card.place,
             refused: None,
         });
@@ -62,44 +67,19 @@ impl<'a> DeckReader<'a> {
     }
 
     /// The material to which a property belongs.
-    fn current(&mut self, card: &Card, current: Option<usize>) -> Result<&mut DeckMaterial> {
+    pub(super) fn current(
+        &mut self,
+        card: &Card,
+        current: Option<usize>,
+    ) -> Result<&mut DeckMaterial> {
         match current {
             Some(m) => Ok(&mut self.deck.materials[m]),
             None => self.error(card, "there is no *MATERIAL before it"),
         }
     }
 
-    fn elastic(&mut self, card: &'a Card, current: Option<usize>) -> Result<()> {
-        let mut params = Params::new(card, self.files);
-        let kind = params.value("TYPE").unwrap_or("ISO");
-        params.done()?;
-        if kind != "ISO" && kind != "ISOTROPIC" {
-            let reason = format!(
-                "TYPE={}: only isotropic linear elasticity is supported",
-                clip(kind)
-            );
-            let note = Self::note(card, card.place, reason);
-            self.current(card, current)?.refused.get_or_insert(note);
-            return Ok(());
-        }
-        let constants = self.constant(card, 2)?;
-        let (young, poisson) = (constants[0], constants[1]);
-        if young <= 0.0 {
-            return self.error(
-                card,
-                format!("Young's modulus is {young}; it must be positive"),
-            );
-        }
-        if poisson <= -1.0 || poisson >= 0.5 {
-            let message = format!("Poisson's ratio is {poisson}; it must lie between -1 and 0.5");
-            return self.error(card, message);
-        }
-        self.current(card, current)?.elastic = Some((young, poisson));
-        Ok(())
-    }
-
     /// The `n` numbers of a property. Further lines are for other temperatures and must say the same.
-    fn constant(&self, card: &'a Card, n: usize) -> Result<Vec<f64>> {
+    pub(super) fn constant(&self, card: &'a Card, n: usize) -> Result<Vec<f64>> {
         let mut constants: Option<Vec<f64>> = None;
         for row in self.cards.rows(card) {
             row.at_most(self.files, n + 1, "a line of this property")?;
@@ -130,13 +110,20 @@ impl<'a> DeckReader<'a> {
             &["COMPOSITE", "CONTROLS", "NODALTHICKNESS"],
             "this is not supported",
         )?;
-        params.skip(&["ORIENTATION"]);
+        let orientation = params.value("ORIENTATION");
         if params.real("OFFSET")?.is_some_and(|x| x != 0.0) {
             return params.error("OFFSET is for shells and beams");
         }
         params.done()?;
         let Some(&material) = self.materials.get(material) else {
             return self.error(card, format!("there is no material {}", clip(material)));
+        };
+        let orientation = match orientation {
+            None => None,
+            Some(name) => match self.orientations.get(name) {
+                Some(&place) => Some(place),
+                None => return self.error(card, format!("there is no orientation {}", clip(name))),
+            },
         };
         let Some(set) = self.elsets.get(elset) else {
             return self.error(card, format!("there is no element set {}", clip(elset)));
@@ -188,20 +175,9 @@ impl<'a> DeckReader<'a> {
             elset: elset.to_string(),
             material,
             thickness,
+            orientation,
             place: card.place,
         });
-        Ok(())
-    }
-
-    pub(super) fn initial_conditions(&mut self, card: &'a Card) -> Result<()> {
-        let mut params = Params::new(card, self.files);
-        let kind = params.required("TYPE")?;
-        let reason = match kind {
-            "TEMPERATURE" => "temperatures do not change: *TEMPERATURE would be refused",
-            "VELOCITY" => "velocities do nothing in static steps",
-            _ => return params.error(format!("TYPE={} is not supported", clip(kind))),
-        };
-        self.deck.ignored.push(Self::note(card, card.place, reason));
         Ok(())
     }
 }

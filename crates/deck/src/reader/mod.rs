@@ -4,7 +4,9 @@
 
 mod base;
 mod contact;
+mod elastic;
 mod gaps;
+mod heat;
 mod held;
 mod ids;
 mod interactions;
@@ -44,6 +46,7 @@ impl<'a> DeckReader<'a> {
         let surfaces = self.surface_groups();
         self.each(&["TRANSFORM"], Self::transform)?;
         self.order_transforms()?;
+        self.each(&["ORIENTATION"], Self::orientation)?;
         self.read_materials()?;
         self.read_interactions()?;
         self.each(&["AMPLITUDE"], Self::amplitude)?;
@@ -76,6 +79,7 @@ impl<'a> DeckReader<'a> {
             "BOUNDARY" => self.boundary(card),
             "CLOAD" => self.cload(card),
             "DLOAD" | "DSLOAD" => self.dload(card),
+            "TEMPERATURE" => self.temperature(card),
             "NODEPRINT" => self.node_print(card),
             "NODEFILE" | "NODEOUTPUT" | "ELFILE" | "ELEMENTOUTPUT" => self.field_request(card),
             _ => Ok(()),

@@ -23,29 +23,9 @@ impl<'a> DeckReader<'a> {
             Some(other) => return params.error(format!("TYPE={} is neither R nor C", clip(other))),
         };
         params.done()?;
-        let Some(row) = self.cards.rows(card).next() else {
-            return self.error(card, "its line of two points is missing");
-        };
-        let a = row.vector(self.files, 0, "a coordinate")?;
-        let b = row.vector(self.files, 3, "a coordinate")?;
-        let (first, second) = if cylindrical {
-            (minus(b, a), [0.0; 3])
-        } else {
-            (a, b)
-        };
-        let lengths = norm(first) * norm(second);
-        if norm(first) == 0.0 || (!cylindrical && norm(cross(a, b)) <= NOTHING * lengths) {
-            let message = "the two points define no axes";
-            return Err(self.files.error(row.place, message));
-        }
         let place = card.place;
         let t = self.deck.transforms.len() as u32;
-        let transform = Transform {
-            cylindrical,
-            a,
-            b,
-            place,
-        };
+        let transform = self.two_points(card, cylindrical)?;
         let Some(set) = self.nsets.get(name) else {
             return self.no_nset(card, name);
         };
@@ -64,6 +44,31 @@ impl<'a> DeckReader<'a> {
         self.spend(members, place)?;
         self.deck.transforms.push(transform);
         Ok(())
+    }
+
+    /// The axes of the two points in the first line of a card.
+    pub(super) fn two_points(&self, card: &Card, cylindrical: bool) -> Result<Transform> {
+        let Some(row) = self.cards.rows(card).next() else {
+            return self.error(card, "its line of two points is missing");
+        };
+        let a = row.vector(self.files, 0, "a coordinate")?;
+        let b = row.vector(self.files, 3, "a coordinate")?;
+        let (first, second) = if cylindrical {
+            (minus(b, a), [0.0; 3])
+        } else {
+            (a, b)
+        };
+        let lengths = norm(first) * norm(second);
+        if norm(first) == 0.0 || (!cylindrical && norm(cross(a, b)) <= NOTHING * lengths) {
+            let message = "the two points define no axes";
+            return Err(self.files.error(row.place, message));
+        }
+        Ok(Transform {
+            cylindrical,
+            a,
+            b,
+            place: card.place,
+        })
     }
 
     /// Keeps the last system of each node.

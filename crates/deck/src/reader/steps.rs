@@ -105,6 +105,7 @@ impl<'a> DeckReader<'a> {
             + state.supports.len()
             + state.forces.len()
             + state.pressures.len()
+            + state.temperatures.len()
             + state
                 .bodies
                 .iter()
@@ -161,6 +162,10 @@ impl<'a> DeckReader<'a> {
                 value,
                 place,
             });
+        }
+        for (&node, held) in &mut state.temperatures {
+            let value = held.end(amplitudes, duration, time);
+            step.temperatures.push((node, value));
         }
         step.forces.retain(|f| f.value != 0.0);
         step.pressures.retain(|p| p.value != 0.0);

@@ -2,6 +2,7 @@
 
 use super::{bad, good, whole, CUBES, REST, STEP};
 use crate::{read, BodyLoadKind, ElementType};
+use elements::law::{Law, Tangent};
 
 #[test]
 fn mistakes_in_nodes_and_elements_are_said() {
@@ -102,10 +103,9 @@ fn materials_and_sections() {
         .ends_with("depend on temperature are not supported"));
     assert!(with("*ELASTIC\n").ends_with("*ELASTIC: its line of data is missing"));
     assert!(with("*DENSITY\n1.\n").ends_with("*SOLID SECTION: the material M has no *ELASTIC"));
-    assert!(with("*ELASTIC,TYPE=ORTHO\n1.,2.\n")
-        .contains("line 22: *ELASTIC: TYPE=ORTHO: only isotropic"));
+    assert!(with("*ELASTIC,TYPE=SHORT FIBER\n1.,2.\n").contains("line 22: *ELASTIC: TYPE="));
     assert!(with("*ELASTIC\n1.,.3\n*PLASTIC\n1.,0.\n").ends_with(
-        "line 24: *PLASTIC: only isotropic linear elasticity is supported \
+        "line 24: *PLASTIC: only linear elasticity is supported \
              (the elements of E have this material)"
     ));
     assert!(section("*ELASTIC\n1.,.3\n").ends_with("*ELASTIC: there is no *MATERIAL before it"));
@@ -132,6 +132,86 @@ fn materials_and_sections() {
         BodyLoadKind::Gravity([0.0, -2.0, 0.0])
     );
     assert!(bad("", "*DLOAD\nE,GRAV,2.,0.,-3.,0.\n").contains("its material M has no *DENSITY"));
+}
+
+/// Laws that are not isotropic: eight constants in a line, a temperature behind the last.
+#[test]
+fn laws_of_many_constants_and_their_axes() {
+    let read = |material: &str, section: &str| {
+        let text = format!(
+            "{CUBES}*MATERIAL,NAME=M\n{material}*SOLID SECTION,ELSET=E,MATERIAL=M{section}\n{STEP}"
+        );
+        read("a.inp", text.as_bytes(), &|_| unreachable!())
+    };
+    let elastic = |material: &str| match read(material, "").expect("a deck").materials[0].elastic {
+        Some(Law::General(tangent)) => tangent.0,
+        other => panic!("{other:?}"),
+    };
+    let ortho = elastic("*ELASTIC,TYPE=ORTHO\n10.,3.,11.,4.,5.,12.,6.,7.\n8.,20.\n");
+    assert_eq!([ortho[0][0], ortho[0][1], ortho[1][1]], [10.0, 3.0, 11.0]);
+    assert_eq!([ortho[0][2], ortho[1][2], ortho[2][2]], [4.0, 5.0, 12.0]);
+    // 12, 13, 23 are our xy, xz, yz.
+    assert_eq!([ortho[3][3], ortho[5][5], ortho[4][4]], [6.0, 7.0, 8.0]);
+    let constants =
+        elastic("*ELASTIC,TYPE=ENGINEERING CONSTANTS\n2.,2.,2.,.25,.25,.25,.8,.8\n.8\n");
+    for (a, b) in constants
+        .iter()
+        .flatten()
+        .zip(Tangent::isotropic(2.0, 0.25).0.iter().flatten())
+    {
+        assert!((a - b).abs() < 1e-14);
+    }
+    let aniso = elastic(
+        "*ELASTIC,TYPE=ANISO\n10.,3.,11.,4.,5.,12.,0.,0.\n0.,6.,0.,0.,0.,.5,7.,0.\n0.,0.,0.,0.,8.,20.\n",
+    );
+    assert_eq!(
+        [aniso[3][3], aniso[3][5], aniso[5][5], aniso[4][4]],
+        [6.0, 0.5, 7.0, 8.0]
+    );
+    let said =
+        |material: &str, section: &str| read(material, section).expect_err("refused").to_string();
+    assert!(
+        said("*ELASTIC,TYPE=ORTHO\n1.,2.\n", "").contains("a constant of the material is expected")
+    );
+    assert!(
+        said("*ELASTIC,TYPE=ORTHO\n1.,2.,1.,2.,2.,1.,1.,1.\n1.\n", "")
+            .contains("no positive energy")
+    );
+    assert!(said("*ELASTIC,TYPE=ORTHO\n9.,2.,9.,2.,2.,9.,1.,1.\n", "")
+        .ends_with("9 constants were expected, eight in a line"));
+
+    let axes = "*ORIENTATION,NAME=O,SYSTEM=CYLINDRICAL\n1.,0.,0.,1.,0.,5.\n3,30.\n";
+    let steel = "*ELASTIC\n1.,.3\n";
+    let deck = read(&format!("{steel}{axes}"), ",ORIENTATION=O");
+    let deck = deck.expect("a deck");
+    let found = &deck.orientations[deck.sections[0].orientation.expect("one") as usize];
+    assert!(found.axes.cylindrical && found.turn == Some((2, 30.0)));
+    assert!(said(steel, ",ORIENTATION=O").ends_with("there is no orientation O"));
+    let wrong = "*ORIENTATION,NAME=O\n1.,0.,0.,0.,1.,0.\n4,30.\n";
+    assert!(said(&format!("{steel}{wrong}"), "").ends_with("the axis is 4; it must be 1, 2 or 3"));
+}
+
+/// Temperatures hold until they are replaced or removed.
+#[test]
+fn temperatures_over_steps() {
+    let step = |more: &str| format!("*STEP\n*STATIC\n{more}*END STEP\n");
+    let text = format!(
+        "{CUBES}*MATERIAL,NAME=M\n*ELASTIC\n1.,.3\n*EXPANSION,ZERO=20.\n1.E-5\n*SOLID SECTION,ELSET=E,MATERIAL=M\n\
+         *AMPLITUDE,NAME=A\n0.,0.,1.,.5\n*INITIAL CONDITIONS,TYPE=TEMPERATURE\nN,20.\n1,30.\n{}{}{}{}",
+        step("*TEMPERATURE\nN,100.\n"),
+        step("*TEMPERATURE,AMPLITUDE=A\n2,60.\n"),
+        step("*TEMPERATURE,OP=NEW\n3,7.\n"),
+        step("")
+    );
+    let deck = read("a.inp", text.as_bytes(), &|_| unreachable!()).expect("a deck");
+    assert_eq!(deck.materials[0].expansion, Some([1e-5; 3]));
+    assert_eq!(deck.initial_temperatures[..2], [(0, 30.0), (1, 20.0)]);
+    let all = deck.initial_temperatures.len();
+    let of = |k: usize| &deck.steps[k].temperatures;
+    assert_eq!((of(0).len(), of(0)[1]), (all, (1, 100.0)));
+    assert_eq!((of(1)[0], of(1)[1]), ((0, 100.0), (1, 30.0)));
+    assert_eq!((of(2), of(3)), (&vec![(2, 7.0)], &vec![(2, 7.0)]));
+    assert!(bad("", "*TEMPERATURE,FILE=old\nN,1.\n").contains("results of other computations"));
 }
 
 #[test]

@@ -19,6 +19,7 @@
 // Tensors are written by their indices, as on paper.
 #![allow(clippy::needless_range_loop)]
 
+mod at_point;
 mod errors;
 mod loads;
 mod map;
@@ -39,11 +40,13 @@ mod stiffness_tests;
 #[path = "../../tests/cell/testing.rs"]
 mod testing;
 
+pub use at_point::NodeStress;
+pub(crate) use at_point::{is_plane_stress, stress_of_gradient};
 pub use errors::error_squares;
 pub use loads::body_load;
 pub use map::jacobian_is_positive;
-pub(crate) use material::Moduli;
 pub use material::{Cure, Material, Plane};
+pub(crate) use material::{IsotropicModuli, Moduli};
 pub use reference::Element;
 pub use rigid::{rigid_count, rigid_motions};
 pub use sides::side_load;

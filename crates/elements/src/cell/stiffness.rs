@@ -1,9 +1,10 @@
 //! The stiffness of one cell.
 
 use super::map::for_each_sample;
-use super::material::Moduli;
+use super::material::{IsotropicModuli, Moduli};
 use super::reference::Rule;
 use super::{Element, Material};
+use crate::law::Tangent;
 
 /// The stiffness matrix of a cell, row-major into `out`, of length (2^`dim` · C)²; symmetric to the last bit.
 ///
@@ -80,11 +81,14 @@ fn elastic<const D: usize, const N: usize>(
             }
         }
     });
-    let Moduli {
+    let IsotropicModuli {
         shear,
         point,
         mean: by_mean,
-    } = moduli;
+    } = match moduli {
+        Moduli::Isotropic(moduli) => moduli,
+        Moduli::General(tangent) => return general(&products, &tangent, out),
+    };
     let by_mean = by_mean / volume;
     let n = D * N;
     for a in 0..N {
@@ -106,6 +110,36 @@ fn elastic<const D: usize, const N: usize>(
                     }
                     out[n * (D * a + i) + D * b + j] = entry;
                     out[n * (D * b + j) + D * a + i] = entry;
+                }
+            }
+        }
+    }
+}
+
+/// Σ C_ijkl ∫ ∂_j N_a ∂_l N_b for the components i and k of nodes a and b.
+fn general<const D: usize, const N: usize>(
+    products: &[[[[f64; N]; N]; D]; D],
+    tangent: &Tangent,
+    out: &mut [f64],
+) {
+    let n = D * N;
+    for a in 0..N {
+        for b in a..N {
+            for i in 0..D {
+                // A diagonal block is computed on and above its diagonal only.
+                for k in if a == b { i } else { 0 }..D {
+                    let mut sum = 0.0;
+                    for j in 0..D {
+                        for l in 0..D {
+                            let product = match j <= l {
+                                true => products[j][l][a][b],
+                                false => products[l][j][b][a],
+                            };
+                            sum += tangent.at(i, j, k, l) * product;
+                        }
+                    }
+                    out[n * (D * a + i) + D * b + k] = sum;
+                    out[n * (D * b + k) + D * a + i] = sum;
                 }
             }
         }

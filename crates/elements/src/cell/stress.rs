@@ -2,7 +2,8 @@
 
 use super::map::{centre_sample, for_each_sample_of, CellSample};
 use super::reference::Rule;
-use super::{Element, Material, Plane};
+use super::{stress_of_gradient, Element, Material, NodeStress};
+use crate::law::COMPONENT;
 
 /// Strain and stress, with the components out of the plane in 2D.
 ///
@@ -65,35 +66,20 @@ pub fn centre_stress(
         let sample = centre_sample(dim, points);
         add_gradient(&sample, 1.0, components, nodal, &mut gradient);
     }
-    let mut out = CellStress::default();
+    let trace = mean[0][0] + mean[1][1] + mean[2][2];
     if let Material::Scalar { rho } = material {
+        let mut out = CellStress::default();
         out.strain[0] = gradient[0];
         out.stress[0] = gradient[0].map(|v| rho * v);
         return out;
     }
     let moduli = material.moduli(dim, element);
-    let trace = |g: &[[f64; 3]; 3]| g[0][0] + g[1][1] + g[2][2];
-    let spherical = moduli.point * trace(&gradient) + moduli.mean * trace(&mean);
-    for i in 0..3 {
-        for j in 0..3 {
-            out.strain[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]);
-            out.stress[i][j] = 2.0 * moduli.shear * out.strain[i][j];
-        }
-        out.stress[i][i] += spherical;
+    let NodeStress { strain, stress } = stress_of_gradient(dim, material, moduli, &gradient, trace);
+    let tensor = |c: &[f64; 6]| COMPONENT.map(|row| row.map(|k| c[k]));
+    CellStress {
+        strain: tensor(&strain),
+        stress: tensor(&stress),
     }
-    if let (
-        2,
-        Material::Elastic {
-            plane: Plane::Stress,
-            poisson,
-            ..
-        },
-    ) = (dim, material)
-    {
-        out.strain[2][2] = -poisson / (1.0 - poisson) * trace(&gradient);
-        out.stress[2][2] = 0.0;
-    }
-    out
 }
 
 /// Adds `weight` times ∇u, `[i][j]` = ∂u_i/∂x_j.

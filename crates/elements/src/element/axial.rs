@@ -8,8 +8,9 @@
 use super::map::{for_each_sample, interpolate_position, relative};
 use super::quadrature::Purpose;
 use super::table::{table, ShapeTable};
-use crate::cell::{Material, Moduli, Plane};
+use crate::cell::{IsotropicModuli, Material, Moduli, Plane};
 use crate::kind::CellKind;
+use crate::law::Tangent;
 use std::f64::consts::TAU;
 
 /// Whether a material is axisymmetric.
@@ -43,15 +44,68 @@ pub(super) fn stiffness(
 ) {
     let table = table(kind, rule(kind, purpose));
     match kind {
-        CellKind::Triangle3 => ring::<3>(points, table, moduli, out),
-        CellKind::Triangle6 => ring::<6>(points, table, moduli, out),
-        CellKind::Quad4 => ring::<4>(points, table, moduli, out),
-        CellKind::Quad8 => ring::<8>(points, table, moduli, out),
-        _ => ring::<9>(points, table, moduli, out),
+        CellKind::Triangle3 => ring_of::<3>(points, table, moduli, out),
+        CellKind::Triangle6 => ring_of::<6>(points, table, moduli, out),
+        CellKind::Quad4 => ring_of::<4>(points, table, moduli, out),
+        CellKind::Quad8 => ring_of::<8>(points, table, moduli, out),
+        _ => ring_of::<9>(points, table, moduli, out),
     }
 }
 
-fn ring<const N: usize>(points: &[[f64; 3]], table: &ShapeTable, moduli: Moduli, out: &mut [f64]) {
+fn ring_of<const N: usize>(
+    points: &[[f64; 3]],
+    table: &ShapeTable,
+    moduli: Moduli,
+    out: &mut [f64],
+) {
+    match moduli {
+        Moduli::Isotropic(moduli) => ring::<N>(points, table, moduli, out),
+        Moduli::General(tangent) => general::<N>(points, table, &tangent, out),
+    }
+}
+
+/// 2π ∫ γ_a · C γ_b r, where γ has the strains xx, yy, around, 2xy of a node's unit displacements.
+fn general<const N: usize>(
+    points: &[[f64; 3]],
+    table: &ShapeTable,
+    tangent: &Tangent,
+    out: &mut [f64],
+) {
+    let n = 2 * N;
+    out.fill(0.0);
+    for_each_sample::<2, N>(&relative(points), table, |s| {
+        let inverse = per_radius(points, table, s.index);
+        let weight = TAU * s.weight / inverse;
+        let values = table.values(s.index);
+        let gamma = |dof: usize| -> [f64; 6] {
+            let (a, i) = (dof / 2, dof % 2);
+            let [x, y] = [s.gradient[0][a], s.gradient[1][a]];
+            match i {
+                0 => [x, 0.0, values[a] * inverse, y, 0.0, 0.0],
+                _ => [0.0, y, 0.0, x, 0.0, 0.0],
+            }
+        };
+        for row in 0..n {
+            let stress = tangent.stress(&gamma(row));
+            for col in row..n {
+                let work: f64 = stress.iter().zip(gamma(col)).map(|(s, g)| s * g).sum();
+                out[n * row + col] += weight * work;
+            }
+        }
+    });
+    for row in 0..n {
+        for col in row..n {
+            out[n * col + row] = out[n * row + col];
+        }
+    }
+}
+
+fn ring<const N: usize>(
+    points: &[[f64; 3]],
+    table: &ShapeTable,
+    moduli: IsotropicModuli,
+    out: &mut [f64],
+) {
     let n = 2 * N;
     let (mut mean, mut volume) = ([[0.0; N]; 2], 0.0);
     out.fill(0.0);

@@ -4,9 +4,9 @@ use super::axial::{is_axial, per_radius};
 use super::integration::{moduli, Integration};
 use super::map::{by_kind, for_each_sample, relative};
 use super::quadrature::Purpose;
-use super::stress::{add_gradient, law, stress_at_nodes, NodeStress};
+use super::stress::{add_gradient, stress_at_nodes, NodeStress};
 use super::table::table;
-use crate::cell::{Material, Moduli};
+use crate::cell::{stress_of_gradient, Material, Moduli};
 use crate::kind::CellKind;
 use std::f64::consts::TAU;
 
@@ -112,7 +112,7 @@ fn squares<const D: usize, const N: usize>(
     for (index, &(weight, gradient)) in samples[..table.weights.len()].iter().enumerate() {
         let values = table.values(index);
         let here = match own {
-            Own::Of(_) => law(D, material, moduli, &gradient, dilatation / volume),
+            Own::Of(_) => stress_of_gradient(D, material, moduli, &gradient, dilatation / volume),
             Own::At(at) => interpolated(values, at),
         };
         let there = interpolated(values, recovered);

@@ -52,9 +52,10 @@ fn cell<const D: usize, const N: usize, const L: usize>(
     products.add(volume, &mean);
     products.stiffness(material.moduli(D, Element::Q1), out);
 
-    let Material::Elastic { young, .. } = *material else {
+    let Material::Elastic { law, .. } = material else {
         panic!("hourglass stiffness is for elastic cells");
     };
+    let young = law.young();
     let squares: f64 = mean.iter().flatten().map(|g| g * g).sum();
     // A layer has half of each gradient at either face and each mode twice. Its gradients across, 1/thickness², are
     // left out: with them the stiffness would hang on the unit of lengths.

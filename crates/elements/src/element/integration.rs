@@ -1,7 +1,7 @@
 //! How the stiffness of a cell is integrated, and which element of CalculiX that is.
 
 use super::axial::is_axial;
-use crate::cell::{Cure, Element, Material, Moduli, Plane};
+use crate::cell::{Cure, Element, Material, Moduli};
 use crate::kind::CellKind;
 
 /// How the stiffness of a cell is integrated.
@@ -19,8 +19,8 @@ use crate::kind::CellKind;
 /// | CPE4R | [`Reduced`](Self::Reduced), plane strain | as C3D8R; CalculiX's hourglass stiffness has a term with 1/thickness², ours has not |
 /// | CPS3, CPS4, CPS6, CPS8, CPS8R | [`Full`](Self::Full), [`Reduced`](Self::Reduced), plane stress | CalculiX is stiffer, see below |
 /// | CPS4R | [`Reduced`](Self::Reduced), plane stress | both of the above |
-/// | CAX4, CAX6, CAX8, CAX8R | [`Full`](Self::Full), [`Reduced`](Self::Reduced), [`Plane::Axial`] | CalculiX's ring is 180 wedges of 2°, flat in between: forces differ by 3e-4 |
-/// | CAX3 | [`Full`](Self::Full), [`Plane::Axial`] | also: ours has three points, with one it could turn about it |
+/// | CAX4, CAX6, CAX8, CAX8R | [`Full`](Self::Full), [`Reduced`](Self::Reduced), [`Plane::Axial`](crate::cell::Plane) | CalculiX's ring is 180 wedges of 2°, flat in between: forces differ by 3e-4 |
+/// | CAX3 | [`Full`](Self::Full), [`Plane::Axial`](crate::cell::Plane) | also: ours has three points, with one it could turn about it |
 /// | CAX4R | none | |
 ///
 /// **Plane cells of CalculiX** are one layer of solid ones (CPE8R is a C3D20R) whose two faces move alike. In plane
@@ -132,14 +132,6 @@ pub(super) fn moduli(
         panic!("{clause}");
     }
     material.moduli(dim, Element::Q1)
-}
-
-/// Whether a material is in plane stress.
-pub(super) fn is_plane_stress(dim: usize, material: &Material) -> bool {
-    let Material::Elastic { plane, .. } = material else {
-        return false;
-    };
-    dim == 2 && *plane == Plane::Stress
 }
 
 #[cfg(test)]

@@ -48,11 +48,12 @@ mod slack;
 mod stiffness;
 mod stress;
 mod table;
+mod thermal;
 mod valid;
 
 #[cfg(test)]
 #[path = "../../tests/element/testing.rs"]
-mod testing;
+pub(crate) mod testing;
 
 pub use errors::error_squares;
 pub use face_values::FaceValues;
@@ -65,4 +66,5 @@ pub use sides::{side_load, side_weights, ElementSideWeights};
 pub use slack::{may_slack, rigid_of, sees, slack, strain_of};
 pub use stiffness::stiffness;
 pub use stress::{principal_stresses, stress_at_nodes, von_mises, NodeStress};
+pub use thermal::{cell_temperatures, thermal_load, thermal_stress};
 pub use valid::{check_jacobian, BadCell, Doubt};

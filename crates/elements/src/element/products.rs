@@ -2,7 +2,8 @@
 //! material.
 
 use super::map::fma;
-use crate::cell::Moduli;
+use crate::cell::{IsotropicModuli, Moduli};
+use crate::law::Tangent;
 
 /// Points that are taken together: sums are then loaded and stored once for all of them.
 const BATCH: usize = 4;
@@ -102,10 +103,10 @@ impl<const D: usize, const N: usize, const L: usize> GradientProducts<D, N, L> {
         if self.count > 0 {
             self.flush();
         }
-        if moduli.mean == 0.0 {
-            self.upper::<false>(moduli, out);
-        } else {
-            self.upper::<true>(moduli, out);
+        match moduli {
+            Moduli::Isotropic(moduli) if moduli.mean == 0.0 => self.upper::<false>(moduli, out),
+            Moduli::Isotropic(moduli) => self.upper::<true>(moduli, out),
+            Moduli::General(tangent) => self.general(&tangent, out),
         }
         // The lower triangle is a copy.
         let n = D * N;
@@ -120,8 +121,8 @@ impl<const D: usize, const N: usize, const L: usize> GradientProducts<D, N, L> {
 
     /// The blocks on and above the diagonal.
     #[inline(always)]
-    fn upper<const MEAN: bool>(&self, moduli: Moduli, out: &mut [f64]) {
-        let Moduli { shear, point, mean } = moduli;
+    fn upper<const MEAN: bool>(&self, moduli: IsotropicModuli, out: &mut [f64]) {
+        let IsotropicModuli { shear, point, mean } = moduli;
         let mean = mean / self.volume;
         let n = D * N;
         for a in 0..N {
@@ -152,6 +153,30 @@ impl<const D: usize, const N: usize, const L: usize> GradientProducts<D, N, L> {
                         }
                     }
                     rows[n * i + D * b..][..D].copy_from_slice(&block[i]);
+                }
+            }
+        }
+    }
+
+    /// The blocks on and above the diagonal, Σ C_ijkl ∫ ∂_j N_a ∂_l N_b for the components i and k.
+    fn general(&self, tangent: &Tangent, out: &mut [f64]) {
+        let n = D * N;
+        for a in 0..N {
+            for b in a..N {
+                let product = |j: usize, l: usize| match j <= l {
+                    true => self.products[pair(j, l)][a][b / 4][b % 4],
+                    false => self.products[pair(l, j)][b][a / 4][a % 4],
+                };
+                for i in 0..D {
+                    for k in 0..D {
+                        let mut sum = 0.0;
+                        for j in 0..D {
+                            for l in 0..D {
+                                sum = fma(tangent.at(i, j, k, l), product(j, l), sum);
+                            }
+                        }
+                        out[n * (D * a + i) + D * b + k] = sum;
+                    }
                 }
             }
         }

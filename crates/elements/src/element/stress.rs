@@ -19,28 +19,14 @@
 use super::axial::{is_axial, per_radius};
 use super::hourglass::mean_gradient;
 use super::incompatible;
-use super::integration::{is_plane_stress, moduli, Integration};
+use super::integration::{moduli, Integration};
 use super::map::{by_kind, for_each_sample, relative};
 use super::quadrature::Purpose;
 use super::table::table;
-use crate::cell::{Material, Moduli};
+pub use crate::cell::NodeStress;
+use crate::cell::{stress_of_gradient, Material};
 use crate::kind::CellKind;
 use std::sync::OnceLock;
-
-/// Strain and stress at a node, components xx, yy, zz, xy, yz, xz; in plane problems with those across the plane,
-/// zz, which of rings are those around.
-///
-/// For a scalar material the first three of `strain` are ∇u and those of `stress` ρ∇u; the rest is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct NodeStress {
-    /// ε = (∇u + ∇uᵀ)/2: shear strains are half the engineering ones.
-    pub strain: [f64; 6],
-    /// σ, in the unit of Young's modulus; tension is positive.
-    pub stress: [f64; 6],
-}
-
-/// Rows and columns of the six components.
-const COMPONENTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
 /// Most points of a rule here: those of the wedge of 15 nodes.
 const MOST_POINTS: usize = 9;
@@ -88,7 +74,7 @@ pub fn stress_at_nodes(
     let rows = extrapolation.len() / points.len();
     let mut values = [NodeStress::default(); MOST_POINTS];
     for (value, gradient) in values.iter_mut().zip(&gradients.at[..rows]) {
-        *value = law(dim, material, moduli, gradient, gradients.mean_dilatation);
+        *value = stress_of_gradient(dim, material, moduli, gradient, gradients.mean_dilatation);
     }
     for (node, factors) in out.iter_mut().zip(extrapolation.chunks_exact(rows)) {
         *node = NodeStress::default();
@@ -158,33 +144,6 @@ pub(super) fn add_gradient<const D: usize, const N: usize>(
     }
 }
 
-/// Strain and stress of a gradient.
-pub(super) fn law(
-    dim: usize,
-    material: &Material,
-    moduli: Moduli,
-    gradient: &[[f64; 3]; 3],
-    mean_dilatation: f64,
-) -> NodeStress {
-    let mut out = NodeStress::default();
-    if let Material::Scalar { rho } = material {
-        out.strain[..3].copy_from_slice(&gradient[0]);
-        out.stress[..3].copy_from_slice(&gradient[0].map(|g| rho * g));
-        return out;
-    }
-    let dilatation = gradient[0][0] + gradient[1][1] + gradient[2][2];
-    let spherical = moduli.point * dilatation + moduli.mean * mean_dilatation;
-    for (c, (i, j)) in COMPONENTS.into_iter().enumerate() {
-        out.strain[c] = 0.5 * (gradient[i][j] + gradient[j][i]);
-        out.stress[c] = 2.0 * moduli.shear * out.strain[c] + if i == j { spherical } else { 0.0 };
-    }
-    if let (true, Material::Elastic { poisson, .. }) = (is_plane_stress(dim, material), material) {
-        out.strain[2] = -poisson / (1.0 - poisson) * dilatation;
-        out.stress[2] = 0.0;
-    }
-    out
-}
-
 /// The equivalent stress of von Mises, (3/2 s:s)^½ with the deviator s.
 pub fn von_mises(stress: &[f64; 6]) -> f64 {
     let [xx, yy, zz, xy, yz, xz] = *stress;
@@ -195,7 +154,7 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// The principal stresses, the largest first.
 pub fn principal_stresses(stress: &[f64; 6]) -> [f64; 3] {
     let mut s = [[0.0; 3]; 3];
-    for (c, (i, j)) in COMPONENTS.into_iter().enumerate() {
+    for (c, (i, j)) in crate::law::COMPONENTS.into_iter().enumerate() {
         s[i][j] = stress[c];
         s[j][i] = stress[c];
     }

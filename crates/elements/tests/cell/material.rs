@@ -1,11 +1,11 @@
 //! Unit tests of `crates/elements/src/cell/material.rs`.
 
 use super::*;
+use crate::law::Law;
 
 fn elastic(young: f64, poisson: f64, plane: Plane, cure: Cure) -> Material {
     Material::Elastic {
-        young,
-        poisson,
+        law: Law::Isotropic { young, poisson },
         plane,
         cure,
     }

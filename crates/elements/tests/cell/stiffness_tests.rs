@@ -4,6 +4,7 @@ use super::testing::{
     combinations, distorted, elastic, matrix, rotation, shape_gradient, times, unit, Grid, Random,
 };
 use super::*;
+use crate::law::Law;
 use crate::q1;
 use faer::{Mat, Side};
 
@@ -321,8 +322,7 @@ fn the_patch_test_passes_on_distorted_cells() {
             let volume = 3f64.powi(dim as i32);
             let mut law = 0.0;
             if let Material::Elastic {
-                young,
-                poisson,
+                law: Law::Isotropic { young, poisson },
                 plane,
                 ..
             } = material

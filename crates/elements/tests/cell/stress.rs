@@ -3,6 +3,8 @@
 use super::super::testing::{combinations, distorted, elastic, Grid, Random};
 use super::super::Cure;
 use super::*;
+use crate::cell::Plane;
+use crate::law::Law;
 
 /// u = G x at the corners of a cell.
 fn linear(cell: &[[f64; 3]], components: usize, g: &[[f64; 3]; 3]) -> Vec<f64> {
@@ -29,8 +31,7 @@ fn linear_displacements_have_their_exact_stress_on_distorted_cells() {
                 let nodal = linear(&cell, material.components(dim), &g);
                 let got = centre_stress(dim, &cell, element, &material, &nodal);
                 let Material::Elastic {
-                    young,
-                    poisson,
+                    law: Law::Isotropic { young, poisson },
                     plane,
                     ..
                 } = material

@@ -1,6 +1,7 @@
 //! For the tests of cells: distorted cells, small grids, a dense solver.
 
 use super::{stiffness, Cure, Element, Material, Plane};
+use crate::law::Law;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
@@ -27,8 +28,7 @@ pub fn shape_gradient(s: f64, t: f64) -> [[f64; 2]; 4] {
 
 pub fn elastic(young: f64, poisson: f64, plane: Plane, cure: Cure) -> Material {
     Material::Elastic {
-        young,
-        poisson,
+        law: Law::Isotropic { young, poisson },
         plane,
         cure,
     }

@@ -6,11 +6,14 @@ use super::super::{
 };
 use super::*;
 use crate::cell::Cure;
+use crate::law::Law;
 use faer::{Mat, Side};
 
 const RING: Material = Material::Elastic {
-    young: 3.0,
-    poisson: 0.3,
+    law: Law::Isotropic {
+        young: 3.0,
+        poisson: 0.3,
+    },
     plane: Plane::Axial,
     cure: Cure::None,
 };

@@ -1,5 +1,6 @@
 use super::super::testing::{elastic, solid_kinds, INTEGRATIONS, STEEL};
 use super::*;
+use crate::cell::Plane;
 
 const BILINEAR: [CellKind; 2] = [CellKind::Quad4, CellKind::Hex8];
 

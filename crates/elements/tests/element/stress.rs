@@ -2,6 +2,7 @@ use super::super::shape_functions::shape;
 use super::super::testing::{affine, combinations, distorted, elastic, solid_kinds, Random, STEEL};
 use super::*;
 use crate::cell::{Cure, Plane};
+use crate::law::{Law, COMPONENTS};
 use faer::{Mat, Side};
 
 /// Strain and stress of a gradient by Hooke's law as textbooks print it: ε = ((1 + ν) σ − ν tr σ)/E.
@@ -41,8 +42,27 @@ fn linear_displacements_have_exact_stresses() {
                         }
                     }
                     Material::Elastic {
-                        young,
-                        poisson,
+                        law: Law::General(tangent),
+                        plane,
+                        ..
+                    } => {
+                        for (c, (i, j)) in COMPONENTS.into_iter().enumerate() {
+                            if i < dim && j < dim {
+                                let expected = 0.5 * (slope[i][j] + slope[j][i]);
+                                assert!((node.strain[c] - expected).abs() < 1e-12);
+                            }
+                        }
+                        let [xx, yy, zz, xy, yz, xz] = node.strain;
+                        let stress = tangent.stress(&[xx, yy, zz, 2.0 * xy, 2.0 * yz, 2.0 * xz]);
+                        for c in 0..6 {
+                            assert!((node.stress[c] - stress[c]).abs() < 1e-11, "{kind:?} {c}");
+                        }
+                        if dim == 2 && plane == Plane::Stress {
+                            assert_eq!(node.stress[2], 0.0);
+                        }
+                    }
+                    Material::Elastic {
+                        law: Law::Isotropic { young, poisson },
                         plane,
                         ..
                     } => {
@@ -101,7 +121,11 @@ fn quadratic_displacements_have_exact_stresses_on_affine_cells_of_second_order()
     for kind in solid_kinds().filter(|kind| kind.order() == 2) {
         let dim = kind.dim();
         for (material, integration) in combinations(kind) {
-            let Material::Elastic { young, poisson, .. } = material else {
+            let Material::Elastic {
+                law: Law::Isotropic { young, poisson },
+                ..
+            } = material
+            else {
                 continue;
             };
             let points = affine(kind);

@@ -5,6 +5,7 @@ use super::shape_functions::{reference_nodes, shape};
 use super::{stiffness, Integration};
 use crate::cell::{Cure, Material, Plane};
 use crate::kind::CellKind;
+use crate::law::{Constants, Law, Transverse};
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
@@ -33,19 +34,35 @@ pub fn solid_kinds() -> impl Iterator<Item = CellKind> {
 
 pub fn elastic(young: f64, poisson: f64, plane: Plane, cure: Cure) -> Material {
     Material::Elastic {
-        young,
-        poisson,
+        law: Law::Isotropic { young, poisson },
         plane,
         cure,
     }
 }
 
 pub const STEEL: Material = Material::Elastic {
-    young: 3.0,
-    poisson: 0.3,
+    law: Law::Isotropic {
+        young: 3.0,
+        poisson: 0.3,
+    },
     plane: Plane::Strain,
     cure: Cure::None,
 };
+
+/// Fibres in the plane, along no axis.
+pub fn fibres(plane: Plane) -> Material {
+    let fibres = Transverse {
+        young: [14.0, 1.0],
+        poisson: [0.3, 0.4],
+        shear: 0.5,
+    };
+    let axes = [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]];
+    Material::Elastic {
+        law: Law::General(fibres.tangent().expect("a sound law").along(&axes)),
+        plane,
+        cure: Cure::None,
+    }
+}
 
 /// Every material and integration that a kind takes.
 pub fn combinations(kind: CellKind) -> Vec<(Material, Integration)> {
@@ -58,6 +75,8 @@ pub fn combinations(kind: CellKind) -> Vec<(Material, Integration)> {
             }
         }
     }
+    materials.push(fibres(Plane::Strain));
+    materials.push(fibres(Plane::Stress));
     for material in materials {
         for integration in INTEGRATIONS {
             if super::check(kind, kind.dim(), &material, integration).is_ok() {

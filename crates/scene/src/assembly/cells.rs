@@ -2,6 +2,7 @@
 
 use super::{Grid, SubdomainMesh};
 use elements::cell::{self, Element};
+use elements::law::{Law, Tangent};
 use elements::q1;
 use std::collections::HashMap;
 
@@ -15,6 +16,8 @@ enum ElementStiffness {
     /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and the index of each element's matrix
     /// (empty: the first).
     Boxes { unit: Vec<Vec<f64>>, of: Vec<u32> },
+    /// Equal boxes of laws that are not isotropic: one matrix for each law, and the index of each element's.
+    ByLaw { all: Vec<Vec<f64>>, of: Vec<u32> },
     /// Curved bodies: one matrix for each element, one after the other.
     Each { n: usize, all: Vec<f64> },
 }
@@ -24,6 +27,7 @@ impl<'m> CellStiffness<'m> {
     pub fn new(mesh: &'m SubdomainMesh, grid: &Grid) -> CellStiffness<'m> {
         let n = grid.corners() * mesh.components();
         let kind = match grid.step {
+            Some(step) if !mesh.laws.of.is_empty() => by_law(mesh, step, n),
             Some(step) => boxes(mesh, step, n),
             None => each(mesh, grid, n),
         };
@@ -38,14 +42,35 @@ impl<'m> CellStiffness<'m> {
                 let which = of.get(e).map_or(0, |&k| k as usize);
                 (&unit[which], self.mesh.rho[e])
             }
+            ElementStiffness::ByLaw { all, of } => (&all[of[e] as usize], 1.0),
             ElementStiffness::Each { n, all } => (&all[e * n * n..(e + 1) * n * n], 1.0),
         }
     }
 }
 
-fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> ElementStiffness {
+/// The corners of a box.
+fn corners(mesh: &SubdomainMesh, step: [f64; 3]) -> Vec<[f64; 3]> {
     let corner = |a: usize| [0, 1, 2].map(|d| step[d] * (a >> d & 1) as f64);
-    let points: Vec<[f64; 3]> = (0..1 << mesh.dim).map(corner).collect();
+    (0..1 << mesh.dim).map(corner).collect()
+}
+
+/// The laws of a box are those of the whole subdomain: every element has one.
+fn by_law(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> ElementStiffness {
+    let points = corners(mesh, step);
+    let matrix = |tangent: &Tangent| {
+        let mut out = vec![0.0; n * n];
+        let material = mesh.form.elastic(Law::General(*tangent));
+        cell::stiffness(mesh.dim, &points, mesh.form.element, &material, &mut out);
+        out
+    };
+    ElementStiffness::ByLaw {
+        all: mesh.laws.tangents.iter().map(matrix).collect(),
+        of: mesh.laws.of.iter().map(|of| of[1]).collect(),
+    }
+}
+
+fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> ElementStiffness {
+    let points = corners(mesh, step);
     let matrix = |poisson: f64| {
         if mesh.dim == 2 && n == 4 && mesh.form.element == Element::Q1 {
             return q1::stiffness(step[0], step[1]).concat();

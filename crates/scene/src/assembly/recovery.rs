@@ -4,6 +4,7 @@
 //! mean of its cells, weighted by their volumes. On meshes of second order the mean converges with the square of the
 //! size of cells, one order faster than the values inside cells of first order do.
 
+use super::thermal::add_thermal_stress;
 use super::{Grid, SubdomainElements, SubdomainMesh};
 use bytemuck::{Pod, Zeroable};
 use elements::cell::{centre_stress, CellStress, Element};
@@ -37,8 +38,22 @@ pub fn for_each_cell(
             }
             _ => element::stress_at_nodes(kind, mesh.dim, &points, &material, rule, &u, at),
         }
+        add_thermal_stress(mesh, (e, kind, nodes), -1.0, at);
         each(e, volume, at);
     }
+}
+
+/// Strain and stress at the nodes of element `e` with these nodes, into `at`; `u` has the element's degrees of freedom.
+pub fn at_nodes(
+    mesh: &SubdomainMesh,
+    (e, kind, nodes): (usize, CellKind, &[u32]),
+    u: &[f64],
+    at: &mut [NodeStress],
+) {
+    let points: Vec<[f64; 3]> = nodes.iter().map(|&k| mesh.points[k as usize]).collect();
+    let (material, rule) = (mesh.material(e), mesh.integration(e));
+    element::stress_at_nodes(kind, mesh.dim, &points, &material, rule, u, at);
+    add_thermal_stress(mesh, (e, kind, nodes), -1.0, at);
 }
 
 /// ∫ (σ* − σ_h) : (ε* − ε_h) and ∫ σ_h : ε_h over all cells. `recovered` gives σ* and ε* at a node of a cell: its
@@ -57,6 +72,8 @@ pub fn squares(
         at.clear();
         at.extend((first..first + nodes.len()).map(&recovered));
         first += nodes.len();
+        // Here σ is C ε: what expansion takes from both stresses is the same.
+        add_thermal_stress(mesh, (e, kind, nodes), 1.0, &mut at);
         let (dim, material, rule) = (mesh.dim, mesh.material(e), mesh.integration(e));
         let here = match &mesh.elements {
             SubdomainElements::Grid(grid) if mesh.form.element == Element::P1 => {
@@ -75,16 +92,17 @@ pub fn cell_stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
     let mut out = Vec::with_capacity(mesh.n_elements());
     match &mesh.elements {
         SubdomainElements::Grid(grid) => {
-            out.extend((0..mesh.n_elements()).map(|e| of_grid(mesh, grid, e, nodal)))
+            for (e, (kind, nodes)) in mesh.cells().iter().enumerate() {
+                // The temperature of a cell of first order is constant.
+                let mut cell = [whole(&of_grid(mesh, grid, e, nodal))];
+                add_thermal_stress(mesh, (e, kind, nodes), -1.0, &mut cell);
+                out.push(of_tensors(&cell[0]));
+            }
         }
         SubdomainElements::Cells(_) => for_each_cell(mesh, nodal, |_, _, at| {
             let mut sum = NodalStressSum::default();
             at.iter().for_each(|node| sum.add(1.0, node));
-            let NodeStress { strain, stress } = sum.mean();
-            out.push(CellStress {
-                strain: tensor(&strain),
-                stress: tensor(&stress),
-            });
+            out.push(of_tensors(&sum.mean()));
         }),
     }
     out
@@ -158,6 +176,13 @@ fn take(
     for k in nodes {
         points.push(mesh.points[k]);
         u.extend_from_slice(&nodal[c * k..c * (k + 1)]);
+    }
+}
+
+fn of_tensors(at: &NodeStress) -> CellStress {
+    CellStress {
+        strain: tensor(&at.strain),
+        stress: tensor(&at.stress),
     }
 }
 

@@ -1,9 +1,11 @@
 //! The mesh of one subdomain, for assembly, error norms and output.
 
+use crate::model::law::LawSpec;
 use elements::cell::Material;
-use elements::element::Integration;
+use elements::element::{cell_temperatures, Integration};
 use elements::form::Form;
 use elements::kind::CellKind;
+use elements::law::{Law, Tangent};
 use mesh::{places, Cells};
 use std::borrow::Cow;
 
@@ -69,6 +71,43 @@ impl Grid {
     }
 }
 
+/// Elastic laws by element, along the axes of space.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ElementLaws {
+    /// The different laws.
+    pub tangents: Vec<Tangent>,
+    /// (the number of the law in its body, its place in `tangents`) of every element; empty: all are isotropic.
+    pub of: Vec<[u32; 2]>,
+}
+
+impl ElementLaws {
+    /// The place in `tangents` of an element's law; `None` if it is isotropic.
+    pub fn place(&self, e: usize) -> Option<usize> {
+        let [law, place] = *self.of.get(e)?;
+        (law != LawSpec::ISOTROPIC).then_some(place as usize)
+    }
+}
+
+/// The strain α ΔT by element.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElementHeat {
+    /// α of every element per degree, the components xx, yy, zz, 2xy, 2yz, 2xz.
+    pub expansion: Vec<[f64; 6]>,
+    /// ΔT of every node, without the factor of the load step.
+    pub change: Vec<f64>,
+    /// The factor of the load step.
+    pub factor: f64,
+}
+
+impl ElementHeat {
+    /// ΔT at the nodes of a cell as its strain takes it, into `out`.
+    pub fn of(&self, kind: CellKind, nodes: &[u32], out: &mut Vec<f64>) {
+        out.clear();
+        out.extend(nodes.iter().map(|&k| self.factor * self.change[k as usize]));
+        cell_temperatures(kind, out);
+    }
+}
+
 /// Nodes and elements with the state of every degree of freedom: free, or prescribed by a Dirichlet condition.
 ///
 /// Degree of freedom c of node k has the index C k + c, with C components of the field.
@@ -94,6 +133,10 @@ pub struct SubdomainMesh {
     pub rho: Vec<f64>,
     /// Poisson's ratio of every element; empty for a scalar problem.
     pub poisson: Vec<f64>,
+    /// The laws of elements that are not isotropic.
+    pub laws: ElementLaws,
+    /// Expansion by heat; `None`: there is none.
+    pub heat: Option<ElementHeat>,
     /// How the stiffness of every cell is integrated; empty: in full.
     pub integration: Vec<Integration>,
     /// ∫ k N_a over sides that stand on springs, by node; empty where there is none.
@@ -168,8 +211,13 @@ impl SubdomainMesh {
 
     /// The material of element `e`.
     pub fn material(&self, e: usize) -> Material {
-        self.form
-            .material(self.rho[e], self.poisson.get(e).copied().unwrap_or(0.0))
+        match self.laws.place(e) {
+            Some(k) => self.form.elastic(Law::General(self.laws.tangents[k])),
+            None => {
+                let poisson = self.poisson.get(e).copied().unwrap_or(0.0);
+                self.form.material(self.rho[e], poisson)
+            }
+        }
     }
 
     /// How the stiffness of element `e` is integrated.

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use super::materials;
 use super::numbers::DeckNumbering;
 use crate::deck::element::deck_element;
 use crate::model::body::{BodySpec, Cut, Force, Load, SurfaceLoad};
@@ -12,6 +13,7 @@ use crate::model::joints::EquationSpec;
 use base::{Error, Result};
 use deck::{BodyLoadKind, Deck, DeckLine, Pressure};
 use elements::element::Integration;
+use elements::law::Law;
 use elements::q1::Quadrature;
 use mesh::{CellMesh, Extractor, Mesh, SideGroup};
 
@@ -56,6 +58,7 @@ pub(super) fn of(
         out.push(body);
     }
     name(deck, numbers, &mut out);
+    materials::heat(deck, numbers, step, &mut out);
     let equations = supports(deck, numbers, step, &mut out)?;
     forces(deck, numbers, step, &mut out)?;
     Ok((out, equations))
@@ -97,7 +100,11 @@ fn body(
     let (mut young, mut poisson, mut thickness) = (Vec::new(), Vec::new(), Vec::new());
     for &c in part {
         let (section, material) = of_cell(c);
-        let (e, nu) = material.elastic.unwrap_or((f64::NAN, f64::NAN));
+        let (e, nu) = match material.elastic {
+            Some(Law::Isotropic { young, poisson }) => (young, poisson),
+            Some(Law::General(tangent)) => tangent.mean(),
+            None => (f64::NAN, f64::NAN),
+        };
         let t = if deck.dim() == 2 {
             section.thickness
         } else {
@@ -116,6 +123,7 @@ fn body(
     let mut body = BodySpec::new(format!("part {}", b + 1), Mesh::Cells(mesh));
     body.rho = by_cell(young);
     body.poisson = by_cell(poisson);
+    body.law = materials::laws(deck, part);
     body.integration = integration;
     body.surface = surface;
     body.load = load;

@@ -9,6 +9,7 @@ mod carriers;
 mod element;
 mod gaps;
 mod joints;
+mod materials;
 mod numbers;
 mod slip_history;
 mod tied;

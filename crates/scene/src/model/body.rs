@@ -7,6 +7,8 @@ use rustc_hash::FxHashMap;
 
 use super::expr::Variables;
 use super::field::Field;
+use super::heat::HeatSpec;
+use super::law::LawSpec;
 use super::map::Map;
 use super::motion::Isometry;
 use super::ramp::Ramp;
@@ -144,6 +146,11 @@ pub struct BodyKind {
     pub rho: Field,
     /// Poisson's ratio, between −1 and ½; ignored in scalar problems.
     pub poisson: Field,
+    /// The laws that are not isotropic; `rho` and `poisson` then have their means over all directions. `None`: E and ν
+    /// are the law.
+    pub law: Option<LawSpec>,
+    /// Expansion by heat, with the ramp of the loads; `None`: there is none.
+    pub heat: Option<HeatSpec>,
     /// Load f.
     pub load: Load,
     /// Loads on its sides.
@@ -192,6 +199,8 @@ impl BodySpec {
                 map: None,
                 rho: Field::constant(1.0),
                 poisson: Field::constant(POISSON),
+                law: None,
+                heat: None,
                 load: Load::constant(0.0),
                 surface: Vec::new(),
                 springs: Vec::new(),

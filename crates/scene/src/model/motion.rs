@@ -51,6 +51,14 @@ impl Isometry {
         self.turn == IDENTITY
     }
 
+    /// Axes, as rows, that are turned along.
+    pub(crate) fn turned(&self, axes: &Matrix) -> Matrix {
+        if self.is_shift() {
+            return *axes;
+        }
+        axes.map(|axis| self.turn.map(|row| dot(row, axis)))
+    }
+
     /// R x + t.
     pub fn apply(&self, x: [f64; 3]) -> [f64; 3] {
         let turned = if self.is_shift() {

@@ -8,6 +8,7 @@ mod form;
 mod friction;
 mod groups;
 mod instances;
+mod material;
 mod mesh;
 mod obstacles;
 mod placements;
@@ -251,9 +252,23 @@ impl SceneReader {
         let elastic = self.form.is_elastic();
         if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
             body.rho = self.coefficient(item, shape, 1.0)?;
+            body.law = None;
         }
         if let Some(item) = elastic.then(|| section.take("poisson")).flatten() {
             body.poisson = self.coefficient(item, shape, POISSON)?;
+        }
+        if let Some(item) = elastic.then(|| section.take("material")).flatten() {
+            for key in ["young", "poisson"] {
+                if let Some(other) = section.entry(key) {
+                    return other.error(format!(
+                        "`{key}` beside `material`, which has its constants"
+                    ));
+                }
+            }
+            self.material(item, body)?;
+        }
+        if elastic {
+            self.heat(section, shape, body)?;
         }
         if let Some(item) = section.take("load") {
             let (fields, quadrature) = self.vector_field(item, shape)?;

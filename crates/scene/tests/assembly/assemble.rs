@@ -40,6 +40,8 @@ fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
         prescribed,
         rho: (0..6).map(|e| 1.0 + e as f64).collect(),
         poisson: Vec::new(),
+        laws: Default::default(),
+        heat: None,
         integration: Vec::new(),
         spring: Vec::new(),
     }

@@ -29,6 +29,8 @@ fn strip(as_cells: bool) -> SubdomainMesh {
         prescribed: vec![0.0; 12],
         rho: vec![1.0, 3.0],
         poisson: vec![0.3, 0.2],
+        laws: Default::default(),
+        heat: None,
         integration: Vec::new(),
         spring: vec![0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
     };

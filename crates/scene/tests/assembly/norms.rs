@@ -22,6 +22,8 @@ fn norms_of_a_known_difference() {
         prescribed: vec![0.0; 6],
         rho: vec![3.0; 2],
         poisson: Vec::new(),
+        laws: Default::default(),
+        heat: None,
         integration: Vec::new(),
         spring: Vec::new(),
     };

@@ -76,6 +76,8 @@ fn simplices(dim: usize, n: usize) -> SubdomainMesh {
         form,
         rho: vec![2.0; cells.len()],
         poisson: vec![0.3; cells.len()],
+        laws: Default::default(),
+        heat: None,
         elements: SubdomainElements::Cells(cells),
         dof: (0..(dim * points.len()) as u32).collect(),
         prescribed: vec![0.0; dim * points.len()],

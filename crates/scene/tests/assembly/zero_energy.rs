@@ -4,6 +4,7 @@ use super::*;
 use elements::cell::{Cure, Material, Plane};
 use elements::form::Physics;
 use elements::kind::CellKind;
+use elements::law::Law;
 use mesh::Cells;
 
 const FORM: Form = Form {
@@ -70,8 +71,10 @@ fn element_nodes(kind: CellKind) -> Vec<[f64; 3]> {
 fn assembled(mesh: &CellMesh) -> Vec<f64> {
     let (c, n) = (mesh.dim, mesh.dim * mesh.points.len());
     let material = Material::Elastic {
-        young: 1.0,
-        poisson: 0.3,
+        law: Law::Isotropic {
+            young: 1.0,
+            poisson: 0.3,
+        },
         plane: Plane::Strain,
         cure: Cure::None,
     };

@@ -4,10 +4,13 @@ use super::*;
 use elements::cell::{Cure, Material};
 use elements::element::quadrature::{rule, Purpose};
 use elements::element::{check, stiffness, Integration};
+use elements::law::Law;
 
 const STEEL: Material = Material::Elastic {
-    young: 3.0,
-    poisson: 0.3,
+    law: Law::Isotropic {
+        young: 3.0,
+        poisson: 0.3,
+    },
     plane: Plane::Strain,
     cure: Cure::None,
 };
@@ -71,8 +74,10 @@ fn displacement(i: usize) -> f64 {
 fn forces(case: &Case, integration: Integration) -> (Vec<f64>, f64) {
     let (kind, _, plane) = ours(&case.name);
     let material = Material::Elastic {
-        young: 1000.0,
-        poisson: 0.3,
+        law: Law::Isotropic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
         plane,
         cure: Cure::None,
     };
@@ -214,8 +219,10 @@ fn every_element_of_a_deck_is_one_of_ours_but_for_one() {
     for &element in ElementType::ALL {
         let (integration, plane) = deck_element(element);
         let material = Material::Elastic {
-            young: 1.0,
-            poisson: 0.3,
+            law: Law::Isotropic {
+                young: 1.0,
+                poisson: 0.3,
+            },
             plane: plane.unwrap_or_default(),
             cure: Cure::None,
         };

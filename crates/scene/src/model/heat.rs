@@ -1,0 +1,45 @@
+//! Expansion by heat.
+
+use super::field::Field;
+use std::sync::Arc;
+
+/// The strain α ΔT of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatSpec {
+    /// α along the axes of the material, per degree: one for the body, or one for every cell of a mesh.
+    pub expansion: Vec<[f64; 3]>,
+    /// The temperature.
+    pub temperature: Temperature,
+    /// The temperature without strain.
+    pub reference: f64,
+}
+
+/// A temperature over a body.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Temperature {
+    /// By points of space.
+    Field(Field),
+    /// By node of a mesh.
+    AtNodes(Arc<Vec<f64>>),
+}
+
+impl Default for HeatSpec {
+    /// A body that does not expand.
+    fn default() -> HeatSpec {
+        HeatSpec {
+            expansion: vec![[0.0; 3]],
+            temperature: Temperature::Field(Field::constant(0.0)),
+            reference: 0.0,
+        }
+    }
+}
+
+impl HeatSpec {
+    /// α of a cell.
+    pub fn of(&self, cell: usize) -> [f64; 3] {
+        match self.expansion.len() {
+            1 => self.expansion[0],
+            _ => self.expansion[cell],
+        }
+    }
+}

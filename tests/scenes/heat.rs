@@ -1,0 +1,125 @@
+//! Bodies that expand by heat, beside closed forms.
+
+use crate::support::scene_message::check;
+use crate::support::session::with_session;
+use fetifeti::settings::MethodSettings;
+use fetifeti::FetiFeti;
+use scene::Scene;
+
+/// The energy of the last load step, and the displacements of all nodes by component with their places.
+fn solve(text: &str) -> (f64, Vec<([f64; 3], usize, f64)>) {
+    let scene = Scene::parse("heat.toml", text).expect("a good scene");
+    with_session(move |session| {
+        let problem = scene.substructures(&|_| true).expect("substructures");
+        let settings = MethodSettings::default().rtol(1e-12);
+        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
+        let solution = solver.solve().expect("solved");
+        assert!(solution.converged(), "{}", solution.status);
+        let mut nodes = Vec::new();
+        for (s, u) in solution.u.iter().enumerate() {
+            let mesh = scene.subdomain_mesh(s).expect("a mesh");
+            let c = mesh.components();
+            for (k, value) in mesh.nodal(u).into_iter().enumerate() {
+                nodes.push((mesh.points[k / c], k % c, value));
+            }
+        }
+        (solution.energy, nodes)
+    })
+}
+
+#[test]
+fn a_free_block_expands_along_the_axes_of_its_material() {
+    // ½ ε₀ C ε₀ of an isotropic law is 9/2 of the bulk modulus times (α ΔT)².
+    let (young, poisson) = (210.0, 0.3);
+    let strain = 1e-2 * (70.0 - 20.0);
+    let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
+    for more in ["", "order = 2\n", "locking = \"bbar\"\n"] {
+        let text = format!(
+            "dimension = 3\nphysics = \"elasticity\"\n{more}[[body]]\nsize = [2, 1, 1]\nelements = [4, 2, 2]\n\
+             subdomains = [2, 1, 1]\nyoung = {young}\npoisson = {poisson}\nexpansion = 1e-2\ntemperature = 70\n\
+             reference = 20\n"
+        );
+        let (energy, nodes) = solve(&text);
+        let expected = -4.5 * bulk * 2.0 * strain * strain;
+        assert!(
+            (energy / expected - 1.0).abs() < 1e-9,
+            "{more} {energy} {expected}"
+        );
+        let along = |c: usize| {
+            let of = nodes.iter().filter(|n| n.1 == c).map(|n| n.2);
+            of.clone().fold(f64::MIN, f64::max) - of.fold(f64::MAX, f64::min)
+        };
+        for (c, length) in [(0, 2.0), (1, 1.0), (2, 1.0)] {
+            assert!(
+                (along(c) - strain * length).abs() < 1e-8,
+                "{c} {}",
+                along(c)
+            );
+        }
+    }
+    // Along fibres it shrinks: with axes 1 and 2 exchanged along y.
+    let text = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nsize = [2, 1, 1]\nelements = [2, 2, 2]\n\
+                material = { transverse = { young = [140, 10], poisson = [0.3, 0.4], shear = 5 }, \
+                axes = [[0, 1, 0], [1, 0, 0]] }\nexpansion = [-1e-3, 2e-2, 3e-2]\ntemperature = 10\n";
+    let (_, nodes) = solve(text);
+    for (c, grows) in [(0, 2.0 * 0.2), (1, -0.01), (2, 0.3)] {
+        let at = |end: f64| {
+            let of = nodes
+                .iter()
+                .filter(|n| n.1 == c && (n.0[c] - end).abs() < 1e-9);
+            of.map(|n| n.2).next().expect("a node")
+        };
+        let length = [2.0, 1.0, 1.0][c];
+        assert!((at(length) - at(0.0) - grows).abs() < 1e-8, "{c}");
+    }
+}
+
+#[test]
+fn a_strip_of_two_metals_bends_as_timoshenko_says() {
+    // Curvature 3/2 (α₁ − α₂) ΔT/h of two halves of equal thickness and stiffness.
+    let (length, height, difference) = (20.0, 0.5, 1e-3);
+    let half = |name: &str, y: f64, alpha: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [{length}, {}]\nelements = [80, 2]\n\
+             subdomains = [4, 1]\nyoung = 1e3\npoisson = 0.3\nexpansion = {alpha}\ntemperature = 100\n\
+             reference = 0\ndirichlet = {{ left = {{ x = 0 }} }}\n",
+            0.5 * height
+        )
+    };
+    let text = format!(
+        "physics = \"elasticity\"\nplane = \"stress\"\norder = 2\n{}{}[[tie]]\nbodies = [\"low\", \"high\"]\n\
+         [steps]\ntimes = [1, 2]\nload = \"t/2\"\n",
+        half("low", 0.0, 0.02 * difference),
+        half("high", 0.5 * height, 0.03 * difference)
+    );
+    let (_, nodes) = solve(&text);
+    let y_at = |x: f64| {
+        let near = nodes
+            .iter()
+            .filter(|n| n.1 == 1 && (n.0[0] - x).abs() < 1e-9 && n.0[1] < 1e-9);
+        near.map(|n| n.2).next().expect("a node")
+    };
+    let curvature = 1.5 * 0.01 * difference * 100.0 / height;
+    let sag = y_at(length) - y_at(0.0);
+    let expected = -0.5 * curvature * length * length;
+    assert!((sag / expected - 1.0).abs() < 5e-3, "{sag} {expected}");
+}
+
+#[test]
+fn what_is_heated_without_sense_is_refused_in_one_sentence() {
+    let body = |head: &str, keys: &str| format!("{head}[[body]]\nelements = 4\nsize = 1\n{keys}\n");
+    check(
+        &body("physics = \"elasticity\"\n", "expansion = [1, 2]"),
+        "s.toml:5: a list of 2 where three numbers along the axes of the material was expected",
+    );
+    let of_p1 = body(
+        "physics = \"elasticity\"\nelement = \"p1\"\n",
+        "expansion = 1\ntemperature = 3",
+    );
+    check(
+        &of_p1,
+        "s.toml:3: body `body0`: `expansion` with `element = \"p1\"` (\"q1\" was expected)",
+    );
+    let scalar = body("", "expansion = 1");
+    assert!(crate::support::scene_message::message(&scalar).contains("unknown key `expansion`"));
+}
