@@ -120,6 +120,11 @@ fn what_is_heated_without_sense_is_refused_in_one_sentence() {
         &of_p1,
         "s.toml:3: body `body0`: `expansion` with `element = \"p1\"` (\"q1\" was expected)",
     );
+    let keys = "expansion = 1\ntemperature = \"1/x\"";
+    check(
+        &body("physics = \"elasticity\"\n", keys),
+        "s.toml:2: body `body0`: temperature inf at (0, 0) where a finite number was expected",
+    );
     let scalar = body("", "expansion = 1");
     assert!(crate::support::scene_message::message(&scalar).contains("unknown key `expansion`"));
 }

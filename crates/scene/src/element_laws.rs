@@ -4,7 +4,7 @@ use super::body::Body;
 use super::coefficient::{evaluate, middles};
 use super::model::heat::{HeatSpec, Temperature};
 use super::model::law::LawSpec;
-use super::quantity::LOAD;
+use super::quantity::TEMPERATURE;
 use crate::assembly::{ElementHeat, ElementLaws, SubdomainMesh};
 use base::linalg::orthogonal::IDENTITY;
 use base::Result;
@@ -73,7 +73,7 @@ pub(super) fn heat_by_element(
             Temperature::Field(field) => evaluate(body, inside, field, point),
             Temperature::AtNodes(values) => values[node],
         };
-        change.push(LOAD.at(spec, temperature - heat.reference, point)?);
+        change.push(TEMPERATURE.at(spec, temperature - heat.reference, point)?);
     }
     let cells = cells_of(body, inside);
     let mut expansion = Vec::with_capacity(mesh.n_elements());

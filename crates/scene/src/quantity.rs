@@ -66,6 +66,12 @@ pub(super) const LOAD: Quantity = Quantity {
     wanted: "a finite number",
 };
 
+/// A temperature.
+pub(super) const TEMPERATURE: Quantity = Quantity {
+    name: "temperature",
+    ..LOAD
+};
+
 /// The stiffness of an elastic foundation.
 pub(super) const SPRING: Quantity = Quantity {
     name: "spring",
