@@ -1,31 +1,7 @@
 //! Bodies that expand by heat, beside closed forms.
 
+use crate::support::answer::solve;
 use crate::support::scene_message::check;
-use crate::support::session::with_session;
-use fetifeti::settings::MethodSettings;
-use fetifeti::FetiFeti;
-use scene::Scene;
-
-/// The energy of the last load step, and the displacements of all nodes by component with their places.
-fn solve(text: &str) -> (f64, Vec<([f64; 3], usize, f64)>) {
-    let scene = Scene::parse("heat.toml", text).expect("a good scene");
-    with_session(move |session| {
-        let problem = scene.substructures(&|_| true).expect("substructures");
-        let settings = MethodSettings::default().rtol(1e-12);
-        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
-        let solution = solver.solve().expect("solved");
-        assert!(solution.converged(), "{}", solution.status);
-        let mut nodes = Vec::new();
-        for (s, u) in solution.u.iter().enumerate() {
-            let mesh = scene.subdomain_mesh(s).expect("a mesh");
-            let c = mesh.components();
-            for (k, value) in mesh.nodal(u).into_iter().enumerate() {
-                nodes.push((mesh.points[k / c], k % c, value));
-            }
-        }
-        (solution.energy, nodes)
-    })
-}
 
 #[test]
 fn a_free_block_expands_along_the_axes_of_its_material() {
@@ -39,7 +15,8 @@ fn a_free_block_expands_along_the_axes_of_its_material() {
              subdomains = [2, 1, 1]\nyoung = {young}\npoisson = {poisson}\nexpansion = 1e-2\ntemperature = 70\n\
              reference = 20\n"
         );
-        let (energy, nodes) = solve(&text);
+        let found = solve(&text);
+        let (energy, nodes) = (found.energy, found.nodes);
         let expected = -4.5 * bulk * 2.0 * strain * strain;
         assert!(
             (energy / expected - 1.0).abs() < 1e-9,
@@ -61,7 +38,7 @@ fn a_free_block_expands_along_the_axes_of_its_material() {
     let text = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nsize = [2, 1, 1]\nelements = [2, 2, 2]\n\
                 material = { transverse = { young = [140, 10], poisson = [0.3, 0.4], shear = 5 }, \
                 axes = [[0, 1, 0], [1, 0, 0]] }\nexpansion = [-1e-3, 2e-2, 3e-2]\ntemperature = 10\n";
-    let (_, nodes) = solve(text);
+    let nodes = solve(text).nodes;
     for (c, grows) in [(0, 2.0 * 0.2), (1, -0.01), (2, 0.3)] {
         let at = |end: f64| {
             let of = nodes
@@ -72,6 +49,16 @@ fn a_free_block_expands_along_the_axes_of_its_material() {
         let length = [2.0, 1.0, 1.0][c];
         assert!((at(length) - at(0.0) - grows).abs() < 1e-8, "{c}");
     }
+}
+
+/// Without a temperature the body has the one of its reference.
+#[test]
+fn a_body_of_no_temperature_keeps_its_shape() {
+    let found = solve(
+        "physics = \"elasticity\"\n[[body]]\nsize = 1\nelements = 4\nexpansion = 1e-3\nreference = 20\n\
+         dirichlet = [\"left\"]\n",
+    );
+    assert!(found.nodes.iter().all(|n| n.2 == 0.0));
 }
 
 #[test]
@@ -92,7 +79,7 @@ fn a_strip_of_two_metals_bends_as_timoshenko_says() {
         half("low", 0.0, 0.02 * difference),
         half("high", 0.5 * height, 0.03 * difference)
     );
-    let (_, nodes) = solve(&text);
+    let nodes = solve(&text).nodes;
     let y_at = |x: f64| {
         let near = nodes
             .iter()
@@ -124,6 +111,10 @@ fn what_is_heated_without_sense_is_refused_in_one_sentence() {
     check(
         &body("physics = \"elasticity\"\n", keys),
         "s.toml:2: body `body0`: temperature inf at (0, 0) where a finite number was expected",
+    );
+    check(
+        &body("physics = \"elasticity\"\n", "temperature = 3"),
+        "s.toml:5: `temperature` without `expansion`, of which it is the cause",
     );
     let scalar = body("", "expansion = 1");
     assert!(crate::support::scene_message::message(&scalar).contains("unknown key `expansion`"));

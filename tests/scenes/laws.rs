@@ -1,41 +1,7 @@
 //! Bodies whose law is not isotropic, beside closed forms.
 
+use crate::support::answer::solve;
 use crate::support::scene_message::check;
-use crate::support::session::with_session;
-use fetifeti::settings::MethodSettings;
-use fetifeti::FetiFeti;
-use scene::Scene;
-
-/// (energy, kinds of subdomains, points and displacements of all free nodes by component) of a scene.
-struct Answer {
-    energy: f64,
-    kinds: usize,
-    nodes: Vec<([f64; 3], usize, f64)>,
-}
-
-fn solve(text: &str) -> Answer {
-    let scene = Scene::parse("law.toml", text).expect("a good scene");
-    with_session(move |session| {
-        let problem = scene.substructures(&|_| true).expect("substructures");
-        let settings = MethodSettings::default().rtol(1e-12);
-        let mut solver = FetiFeti::new(session, problem, settings).expect("set up");
-        let solution = solver.solve().expect("solved");
-        assert!(solution.converged(), "{}", solution.status);
-        let mut nodes = Vec::new();
-        for (s, u) in solution.u.iter().enumerate() {
-            let mesh = scene.subdomain_mesh(s).expect("a mesh");
-            let c = mesh.components();
-            for (k, value) in mesh.nodal(u).into_iter().enumerate() {
-                nodes.push((mesh.points[k / c], k % c, value));
-            }
-        }
-        Answer {
-            energy: solution.energy,
-            kinds: solver.facts().kinds,
-            nodes,
-        }
-    })
-}
 
 /// Fibres along the first axis.
 const FIBRES: &str = "transverse = { young = [140, 10], poisson = [0.3, 0.4], shear = 5 }";
@@ -182,6 +148,13 @@ fn a_law_that_does_not_fit_is_refused_in_one_sentence() {
     check(
         &format!("{}young = 3\n", body(&format!("{{ {FIBRES} }}"))),
         "s.toml:6: `young` beside `material`, which has its constants",
+    );
+    check(
+        &format!(
+            "{}instances = [[0, 0], [3, 0]]\n[[body.only]]\ninstances = 1\npoisson = 0.2\n",
+            body(&format!("{{ {FIBRES} }}"))
+        ),
+        "s.toml:9: one of `young` and `poisson` in place of `material` (both were expected)",
     );
     check(
         &format!("locking = \"bbar\"\n{}", body(&format!("{{ {FIBRES} }}"))),

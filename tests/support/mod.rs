@@ -1,6 +1,7 @@
 //! Helpers of the test programs; every program uses its own part.
 #![allow(dead_code)]
 
+pub mod answer;
 pub mod assembled;
 pub mod cells;
 pub mod checks;

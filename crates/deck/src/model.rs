@@ -103,8 +103,6 @@ pub struct Transform {
 /// An *ORIENTATION: the axes along which the constants of materials count.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orientation {
-    /// Its name, in capitals.
-    pub name: String,
     /// The axes before they are turned.
     pub axes: Transform,
     /// The axis about which they are turned, 0 to 2, and by how many degrees.

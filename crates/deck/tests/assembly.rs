@@ -137,6 +137,24 @@ fn equations_and_systems_are_those_of_each_instance() {
     assert_eq!(deck.cell_section, [0, 1]);
 }
 
+/// Axes of materials go with the instances of a part.
+#[test]
+fn orientations_are_those_of_each_instance() {
+    let part = PART
+        .replace("MATERIAL=M", "MATERIAL=M, ORIENTATION=O")
+        .replace(
+            "*EQUATION",
+            "*ORIENTATION, NAME=O\n1, 0, 0, 0, 1, 0\n3, 0\n*EQUATION",
+        );
+    let deck = deck(&format!("{part}{ASSEMBLY}{REST}")).expect("a deck");
+    let axes = |k: usize| {
+        let place = deck.sections[k].orientation.expect("one");
+        deck.orientations[place as usize].axes.frame([0.0; 3])[0]
+    };
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(near(axes(0), [1.0, 0.0, 0.0]) && near(axes(1), [0.0, 1.0, 0.0]));
+}
+
 /// A part without an instance is said to be left out; what it has is not told twice of one with two.
 #[test]
 fn what_is_left_out_is_told() {

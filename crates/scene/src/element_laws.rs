@@ -63,13 +63,13 @@ pub(super) fn heat_by_element(
     body: &Body,
     inside: usize,
     mesh: &SubdomainMesh,
-    heat: &HeatSpec,
+    (heat, temperature): (&HeatSpec, &Temperature),
 ) -> Result<ElementHeat> {
     let spec = &body.spec;
     let nodes = body.mesh().subdomain_nodes(inside);
     let mut change = Vec::with_capacity(nodes.len());
     for (node, &point) in nodes.into_iter().zip(&mesh.points) {
-        let temperature = match &heat.temperature {
+        let temperature = match temperature {
             Temperature::Field(field) => evaluate(body, inside, field, point),
             Temperature::AtNodes(values) => values[node],
         };

@@ -72,8 +72,9 @@ impl Scene {
         if let Some(law) = &body.spec.law {
             mesh.laws = laws_by_element(body, inside, &mesh, law);
         }
-        if let Some(heat) = &body.spec.heat {
-            let mut heat = heat_by_element(body, inside, &mesh, heat)?;
+        let heat = body.spec.heat.as_ref();
+        if let Some(given) = heat.and_then(|heat| Some((heat, heat.temperature.as_ref()?))) {
+            let mut heat = heat_by_element(body, inside, &mesh, given)?;
             heat.factor = factors.load(body.spec.ramp.as_ref());
             mesh.heat = Some(heat);
         }

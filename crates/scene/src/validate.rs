@@ -6,7 +6,7 @@ use super::model::field::{At, Field};
 use super::model::heat::Temperature;
 use super::model::law::OrientedLaw;
 use super::model::spec::SceneSpec;
-use super::quantity::{Quantity, LARGEST, LOAD, LONGEST, RATIO};
+use super::quantity::{Quantity, LARGEST, LOAD, LONGEST, RATIO, TEMPERATURE};
 use base::{Error, Result};
 use elements::cell::{jacobian_is_positive, Element};
 use elements::form::Form;
@@ -176,6 +176,13 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     if body.heat.is_some() && form.element == Element::P1 && body.mesh.grid().is_some() {
         return body.error("`expansion` with `element = \"p1\"` (\"q1\" was expected)");
     }
+    let temperature = body
+        .heat
+        .as_ref()
+        .and_then(|heat| heat.temperature.as_ref());
+    if let Some(Temperature::Field(field)) = temperature {
+        TEMPERATURE.check(body, field)?;
+    }
     let components = form.components(body.mesh.dim());
     let count = |n: usize, what: &str| {
         if n == components || n == 1 && components == 1 {
@@ -191,9 +198,6 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
         count(body.load.fields.len(), "a load")?;
     }
     let mut fields: Vec<&Field> = body.load.fields.iter().collect();
-    if let Some(Temperature::Field(field)) = body.heat.as_ref().map(|heat| &heat.temperature) {
-        fields.push(field);
-    }
     for load in &body.surface {
         match &load.force {
             Force::Traction(list) => {

@@ -256,9 +256,8 @@ impl<'a> Flat<'a> {
         let name = |p: &Param| -> Option<Param> {
             let of_surface = card.keyword == "SURFACE" && p.name == "NAME";
             let value = match p.name.as_str() {
-                "NSET" | "ELSET" => own.name(&names, &p.value),
+                "NSET" | "ELSET" | "ORIENTATION" => own.name(&names, &p.value),
                 "NAME" if of_surface || card.keyword == "ORIENTATION" => own.name(&names, &p.value),
-                "ORIENTATION" => own.name(&names, &p.value),
                 "ADJUST" | "MASTER" | "SLAVE" if real(&p.value).is_none() => {
                     own.target(&names, &p.value, Of::Nodes)
                 }

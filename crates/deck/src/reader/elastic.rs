@@ -153,11 +153,7 @@ impl<'a> DeckReader<'a> {
             let message = format!("the orientation {} is defined before", clip(name));
             return self.error(card, message);
         }
-        self.deck.orientations.push(Orientation {
-            name: name.to_string(),
-            axes,
-            turn,
-        });
+        self.deck.orientations.push(Orientation { axes, turn });
         Ok(())
     }
 }

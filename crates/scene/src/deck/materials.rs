@@ -98,7 +98,7 @@ pub(super) fn heat(deck: &Deck, numbers: &DeckNumbering, step: usize, bodies: &m
         if expansion.iter().flatten().any(|a| *a != 0.0) {
             bodies[b].heat = Some(HeatSpec {
                 expansion,
-                temperature: Temperature::AtNodes(Arc::new(change)),
+                temperature: Some(Temperature::AtNodes(Arc::new(change))),
                 reference: 0.0,
             });
         }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 /// The strain α ΔT of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatSpec {
-    /// α along the axes of the material, per degree: one for the body, or one for every cell of a mesh.
+    /// α along the axes of the material, per degree: one for the body, or one for every cell of a mesh; empty: none is given.
     pub expansion: Vec<[f64; 3]>,
-    /// The temperature.
-    pub temperature: Temperature,
+    /// The temperature; `None`: the one without strain.
+    pub temperature: Option<Temperature>,
     /// The temperature without strain.
     pub reference: f64,
 }
@@ -27,8 +27,8 @@ impl Default for HeatSpec {
     /// A body that does not expand.
     fn default() -> HeatSpec {
         HeatSpec {
-            expansion: vec![[0.0; 3]],
-            temperature: Temperature::Field(Field::constant(0.0)),
+            expansion: Vec::new(),
+            temperature: None,
             reference: 0.0,
         }
     }
@@ -38,6 +38,7 @@ impl HeatSpec {
     /// α of a cell.
     pub fn of(&self, cell: usize) -> [f64; 3] {
         match self.expansion.len() {
+            0 => [0.0; 3],
             1 => self.expansion[0],
             _ => self.expansion[cell],
         }

@@ -86,6 +86,7 @@ impl SceneReader {
             Value::List(_) => self.several(item, "three numbers along the axes of the material"),
             _ => Ok([self.number(item)?; 3]),
         })?;
+        let lost = section.entry("temperature");
         let temperature = section.read("temperature", |item| self.field(item, shape, 0.0))?;
         let reference = section.read("reference", |item| self.number(item))?;
         if expansion.is_none() && temperature.is_none() && reference.is_none() {
@@ -95,9 +96,12 @@ impl SceneReader {
             heat.expansion = vec![expansion];
         }
         if let Some((field, _)) = temperature {
-            heat.temperature = Temperature::Field(field);
+            heat.temperature = Some(Temperature::Field(field));
         }
         heat.reference = reference.unwrap_or(heat.reference);
+        if let Some(item) = lost.filter(|_| heat.expansion.is_empty()) {
+            return item.error("`temperature` without `expansion`, of which it is the cause");
+        }
         body.heat = Some(heat);
         Ok(())
     }

@@ -250,6 +250,14 @@ impl SceneReader {
         body: &mut BodySpec,
     ) -> Result<()> {
         let elastic = self.form.is_elastic();
+        if body.law.is_some() && section.entry("material").is_none() {
+            let given = ["young", "poisson"].map(|key| section.entry(key));
+            if let [Some(one), None] | [None, Some(one)] = given {
+                return one.error(
+                    "one of `young` and `poisson` in place of `material` (both were expected)",
+                );
+            }
+        }
         if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
             body.rho = self.coefficient(item, shape, 1.0)?;
             body.law = None;
