@@ -6,7 +6,8 @@ use std::sync::Arc;
 /// The strain α ΔT of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatSpec {
-    /// α along the axes of the material, per degree: one for the body, or one for every cell of a mesh; empty: none is given.
+    /// α along the axes of the material, per degree: one for the body, or one for every cell of a mesh; empty: none is
+    /// given.
     pub expansion: Vec<[f64; 3]>,
     /// The temperature; `None`: the one without strain.
     pub temperature: Option<Temperature>,
